@@ -1,0 +1,224 @@
+"""The values that travel round the control loop: the only types that cross folders.
+
+    measurement ─▶ estimate ─▶ reference ─▶ command ─▶ plant ─▶ measurement
+
+All of them are frozen. Units are SI, angles in radians. Wrenches are the environment's reaction on the robot, linear part
+first. `n` is the number of joints. A pose, twist or wrench whose name ends in a frame is expressed at that frame's origin; in
+axes aligned with the world unless the field says otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from pliant.errors import ConfigError
+from pliant.spatial import Array, as_vector
+
+_NOTHING: Mapping[str, Any] = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """What the sensors say at one instant, imperfections included."""
+
+    time: float
+    """s since the start of the run"""
+    q: Array
+    """(n,) joint positions, rad"""
+    v: Array
+    """(n,) joint velocities, rad/s"""
+    torque: Array
+    """(n,) torque at the link side of each joint, N·m"""
+    torque_sent: Array
+    """(n,) torque that was really sent in the period that ends now, after every clamp, N·m"""
+    wrenches: Mapping[str, Array] = field(default=_NOTHING)
+    """frame → (6,) wrench of a force/torque sensor at that frame, in the frame's own axes, N and N·m. It holds everything the
+    sensor feels, the tool's weight and inertia too."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """What the robot believes: the measurement filtered, compensated and completed."""
+
+    time: float
+    q: Array
+    """(n,) rad"""
+    v: Array
+    """(n,) rad/s"""
+    torque: Array
+    """(n,) N·m"""
+    torque_sent: Array
+    """(n,) N·m"""
+    wrenches: Mapping[str, Array] = field(default=_NOTHING)
+    """frame → (6,) contact wrench at that frame, world axes, tool weight and bias removed"""
+    contacts: Mapping[str, bool] = field(default=_NOTHING)
+    """frame → whether it is believed to touch something"""
+    disturbance: Array | None = None
+    """(n,) joint torque that the model does not explain, N·m, where an observer runs"""
+
+
+@dataclass(frozen=True, slots=True)
+class ImpedanceTuning:
+    """Parameters of one fractal impedance task, one entry per axis (3, or 6 with rotation). Swapped whole between two ticks.
+
+    The force grows with `stiffness` up to the error `linear_range`, then bends towards `force_max`, which it reaches (to
+    within a fraction of a percent) at `range`. An axis with stiffness and force_max both zero is off.
+
+    Raises:
+        ConfigError: on construction, if the parameters are impossible (names the axis and the numbers).
+    """
+
+    stiffness: Array
+    """K_0 (k,), N/m and N·m/rad"""
+    force_max: Array
+    """F_max (k,), N and N·m"""
+    range: Array
+    """x_b (k,), m and rad: the error at which F_max is reached"""
+    linear_range: Array | None = None
+    """x_0 (k,), m and rad: the end of the linear part. None: derived from the profile (0.95 x_b, or where 0.95 F_max is reached)"""
+
+    def __post_init__(self) -> None:
+        size = np.atleast_1d(np.asarray(self.range)).shape[0]
+        for name in ("stiffness", "force_max", "range", "linear_range"):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            vector = as_vector(value, size, name)
+            if np.any(vector < 0.0):
+                raise ConfigError(f"{name} must not be negative, got {vector.tolist()}")
+            object.__setattr__(self, name, vector)
+        off = (self.stiffness == 0.0) & (self.force_max == 0.0)
+        if np.any((self.stiffness == 0.0) & ~off):
+            raise ConfigError(
+                f"stiffness 0 needs force_max 0 (an axis that is off), got stiffness {self.stiffness.tolist()}"
+                f" with force_max {self.force_max.tolist()}"
+            )
+        if np.any(~off & ~(self.range > 0.0)):
+            raise ConfigError(f"range (x_b) must be above zero on an active axis, got {self.range.tolist()}")
+        if self.linear_range is not None:
+            self._check_linear_range(off, self.linear_range)
+
+    def _check_linear_range(self, off: Array, linear_range: Array) -> None:
+        for axis in np.flatnonzero(~off):
+            K_0, F_max = float(self.stiffness[axis]), float(self.force_max[axis])
+            x_0, x_b = float(linear_range[axis]), float(self.range[axis])
+            if x_b <= x_0:
+                raise ConfigError(f"axis {axis}: range x_b must exceed linear_range x_0, got x_b = {x_b:g}, x_0 = {x_0:g}")
+            if F_max < K_0 * x_0:
+                raise ConfigError(
+                    f"axis {axis}: force_max must be at least stiffness · linear_range, got F_max = {F_max:g} <"
+                    f" {K_0:g} · {x_0:g} = {K_0 * x_0:g}"
+                )
+
+    @property
+    def axes(self) -> int:
+        """Number of axes, 3 or 6."""
+        return int(self.range.shape[0])
+
+
+@dataclass(frozen=True, slots=True)
+class TaskReference:
+    """Where one frame should be, how it should move, and how hard it should press."""
+
+    frame: str
+    position: Array
+    """(3,) of the frame's origin in the world, m"""
+    rotation: Array | None = None
+    """R_world_frame (3, 3); None leaves the orientation free"""
+    velocity: Array = field(default_factory=lambda: np.zeros(6))
+    """(6,) twist, world axes, m/s and rad/s"""
+    acceleration: Array = field(default_factory=lambda: np.zeros(6))
+    """(6,) m/s² and rad/s²"""
+    wrench: Array = field(default_factory=lambda: np.zeros(6))
+    """(6,) desired reaction of the environment, N and N·m (a tool pressing 40 N on a floor: +40 along z)"""
+    tuning: ImpedanceTuning | None = None
+    """None: the controller's own"""
+
+
+@dataclass(frozen=True, slots=True)
+class Preview:
+    """The reference at the nodes of a prediction horizon, N + 1 instants from now on. Controllers without one ignore it."""
+
+    time: Array
+    """(N+1,) s"""
+    position: Array
+    """(N+1, 3) m"""
+    rotation: Array
+    """(N+1, 3, 3) R_world_frame"""
+    velocity: Array
+    """(N+1, 6) twist, m/s and rad/s"""
+    wrench: Array
+    """(N+1, 6) desired reaction, N and N·m"""
+    phase: tuple[str, ...] = ()
+    """(N+1,) name of the phase at each node"""
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """What the robot should do now."""
+
+    time: float
+    tasks: tuple[TaskReference, ...] = ()
+    """one entry per controlled frame, the most important first"""
+    posture: Array | None = None
+    """(n,) joint configuration that goes with the tasks, rad"""
+    phase: str = ""
+    """name of the phase of the task, for people and logs"""
+    preview: Preview | None = None
+    """the first task over a horizon"""
+    tuning: Any = None
+    """a frozen value with weights or gains of the whole controller (None: its own)"""
+    diagnostics: Mapping[str, float | Array] = field(default=_NOTHING)
+    """channel → value, for the log: states and outputs of planners and exploration"""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """What the controller asks of the actuators."""
+
+    time: float
+    """time of the estimate it was computed from, s"""
+    torque: Array
+    """(n,) N·m, finite and within the limits"""
+    clamped: Array
+    """(n,) what the torque limits took away: wanted minus torque, N·m"""
+    diagnostics: Mapping[str, float | Array] = field(default=_NOTHING)
+    """channel → value, for the log"""
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """What really happens in a simulated world. Only metrics and pictures see it; no controller does."""
+
+    time: float
+    q: Array
+    v: Array
+    torque: Array
+    """(n,) torque that really acts at the link side, N·m"""
+    positions: Mapping[str, Array] = field(default=_NOTHING)
+    """frame → (3,) m"""
+    rotations: Mapping[str, Array] = field(default=_NOTHING)
+    """frame → (3, 3) R_world_frame"""
+    wrenches: Mapping[str, Array] = field(default=_NOTHING)
+    """frame → (6,) contact wrench on the robot at that frame, world axes"""
+    objects: Mapping[str, Array] = field(default=_NOTHING)
+    """object → (7,) position and quaternion (w, x, y, z) of every body in the scene that can move"""
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """One turn of the loop as observers see it."""
+
+    measurement: Measurement
+    estimate: Estimate
+    reference: Reference
+    command: Command
+    truth: Truth | None
+    """None on a real robot"""
+    wall: Mapping[str, float] = field(default=_NOTHING)
+    """stage → seconds of wall time it took; never part of the reproducible log"""
