@@ -234,7 +234,7 @@ def _with_rod(visual: pin.GeometryModel | None, joint: int, middle: pin.SE3, too
     if visual is None:
         return None
     shown = pin.GeometryModel(visual)
-    rod = pin.GeometryObject(f"{tool.frame}_rod", joint, coal.Cylinder(tool.radius, tool.length), middle)
+    rod = pin.GeometryObject(f"{tool.frame}_rod", joint, middle, coal.Cylinder(tool.radius, tool.length))
     rod.meshColor = np.array([0.75, 0.77, 0.80, 1.0])
     shown.addGeometryObject(rod)
     return shown
