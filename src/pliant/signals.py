@@ -22,6 +22,10 @@ from pliant.spatial import Array, as_vector
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
+def _nothing() -> Mapping[str, Any]:
+    return _NOTHING
+
+
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """What the sensors say at one instant, imperfections included."""
@@ -36,7 +40,7 @@ class Measurement:
     """(n,) torque at the link side of each joint, N·m"""
     torque_sent: Array
     """(n,) torque that was really sent in the period that ends now, after every clamp, N·m"""
-    wrenches: Mapping[str, Array] = field(default=_NOTHING)
+    wrenches: Mapping[str, Array] = field(default_factory=_nothing)
     """frame → (6,) wrench of a force/torque sensor at that frame, in the frame's own axes, N and N·m. It holds everything the
     sensor feels, the tool's weight and inertia too."""
 
@@ -54,9 +58,9 @@ class Estimate:
     """(n,) N·m"""
     torque_sent: Array
     """(n,) N·m"""
-    wrenches: Mapping[str, Array] = field(default=_NOTHING)
+    wrenches: Mapping[str, Array] = field(default_factory=_nothing)
     """frame → (6,) contact wrench at that frame, world axes, tool weight and bias removed"""
-    contacts: Mapping[str, bool] = field(default=_NOTHING)
+    contacts: Mapping[str, bool] = field(default_factory=_nothing)
     """frame → whether it is believed to touch something"""
     disturbance: Array | None = None
     """(n,) joint torque that the model does not explain, N·m, where an observer runs"""
@@ -173,7 +177,7 @@ class Reference:
     """the first task over a horizon"""
     tuning: Any = None
     """a frozen value with weights or gains of the whole controller (None: its own)"""
-    diagnostics: Mapping[str, float | Array] = field(default=_NOTHING)
+    diagnostics: Mapping[str, float | Array] = field(default_factory=_nothing)
     """channel → value, for the log: states and outputs of planners and exploration"""
 
 
@@ -187,7 +191,7 @@ class Command:
     """(n,) N·m, finite and within the limits"""
     clamped: Array
     """(n,) what the torque limits took away: wanted minus torque, N·m"""
-    diagnostics: Mapping[str, float | Array] = field(default=_NOTHING)
+    diagnostics: Mapping[str, float | Array] = field(default_factory=_nothing)
     """channel → value, for the log"""
 
 
@@ -200,13 +204,13 @@ class Truth:
     v: Array
     torque: Array
     """(n,) torque that really acts at the link side, N·m"""
-    positions: Mapping[str, Array] = field(default=_NOTHING)
+    positions: Mapping[str, Array] = field(default_factory=_nothing)
     """frame → (3,) m"""
-    rotations: Mapping[str, Array] = field(default=_NOTHING)
+    rotations: Mapping[str, Array] = field(default_factory=_nothing)
     """frame → (3, 3) R_world_frame"""
-    wrenches: Mapping[str, Array] = field(default=_NOTHING)
+    wrenches: Mapping[str, Array] = field(default_factory=_nothing)
     """frame → (6,) contact wrench on the robot at that frame, world axes"""
-    objects: Mapping[str, Array] = field(default=_NOTHING)
+    objects: Mapping[str, Array] = field(default_factory=_nothing)
     """object → (7,) position and quaternion (w, x, y, z) of every body in the scene that can move"""
 
 
@@ -220,5 +224,5 @@ class Tick:
     command: Command
     truth: Truth | None
     """None on a real robot"""
-    wall: Mapping[str, float] = field(default=_NOTHING)
+    wall: Mapping[str, float] = field(default_factory=_nothing)
     """stage → seconds of wall time it took; never part of the reproducible log"""

@@ -1,0 +1,23 @@
+"""The simulated robot and its world. Controllers never import this."""
+
+from pliant.simulation.disturbances import Push, random_pushes
+from pliant.simulation.force_sensor import ForceSensor
+from pliant.simulation.plant import JointEffects, MujocoPlant, World
+from pliant.simulation.scene import Ball, Box, Plane, Scene, Surface, floor, table, wall
+
+__all__ = [
+    "Ball",
+    "Box",
+    "ForceSensor",
+    "JointEffects",
+    "MujocoPlant",
+    "Plane",
+    "Push",
+    "Scene",
+    "Surface",
+    "World",
+    "floor",
+    "random_pushes",
+    "table",
+    "wall",
+]

@@ -1,0 +1,294 @@
+"""The simulated plant: any robot of `Robot` in any `Scene`, torque in, sensors out, in MuJoCo."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from pliant.errors import ConfigError, options
+from pliant.interfaces import Plant
+from pliant.mujoco_model import spec_from_robot
+from pliant.robot import Robot
+from pliant.signals import Command, Measurement, Truth
+from pliant.simulation.contact_recipe import add_pair, apply_surface
+from pliant.simulation.disturbances import Push
+from pliant.simulation.force_sensor import ForceSensor
+from pliant.simulation.scene import Plane, Scene, Thing
+from pliant.spatial import Array
+
+Compensation = Literal["none", "gravity", "gravity+coriolis"]
+
+
+@dataclass(frozen=True)
+class JointEffects:
+    """What the joints do by themselves. Damping and friction are scalars or (n,)."""
+
+    friction: float | tuple[float, ...] = 0.0
+    """N·m of dry friction"""
+    damping: float | tuple[float, ...] = 0.0
+    """N·m s/rad"""
+    compensation: Compensation = "none"
+    """what the robot's own controller adds, invisibly, to the torque that is sent"""
+
+    def __post_init__(self) -> None:
+        for name in ("friction", "damping"):
+            value = np.asarray(getattr(self, name))
+            if not (np.isfinite(value).all() and (value >= 0.0).all()):
+                raise ConfigError(f"joint {name} must not be negative, got {getattr(self, name)}")
+        if self.compensation not in ("none", "gravity", "gravity+coriolis"):
+            valid = options(["none", "gravity", "gravity+coriolis"], self.compensation)
+            raise ConfigError(f"unknown compensation {self.compensation!r}; {valid}")
+
+
+@dataclass(slots=True)
+class World:
+    """State of the simulated world. Consumed by `step`."""
+
+    data: mujoco.MjData
+    ticks: int
+    """control periods since the start"""
+    wrenches: dict[str, Array]
+    """frame → (6,) contact wrench of the last physics step, world axes"""
+    touching: frozenset[str]
+    """frames and robot parts that touched something in the last physics step"""
+
+
+class MujocoPlant(Plant[World]):
+    """A simulated robot whose sensors and actuators are perfect.
+
+    The wrench read at the end of a period is the one that acted during its last physics step.
+
+    Args:
+        robot: the robot; frames with a contact radius can touch the things in the scene.
+        scene: what it can meet.
+        period: control period in s, a whole multiple of `physics_step`. Torques are held constant over it.
+        physics_step: s.
+        start: (n,) configuration at the start, rad; None: the robot's home.
+        joints: friction, damping and compensation of the joints.
+        sensors: force/torque sensors.
+        pushes: disturbances.
+
+    Raises:
+        ConfigError: the period is not a multiple of the physics step, or the step is too long for a contact.
+        RobotError: a frame that the robot does not have.
+        ShapeError: `start` does not fit the robot.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        scene: Scene | None = None,
+        *,
+        period: float = 1e-3,
+        physics_step: float = 5e-4,
+        start: npt.ArrayLike | None = None,
+        joints: JointEffects | None = None,
+        sensors: Sequence[ForceSensor] = (),
+        pushes: Sequence[Push] = (),
+    ) -> None:
+        self.robot = robot
+        self.scene = scene or Scene()
+        self.period = period
+        self.substeps = _substeps(period, physics_step)
+        self.joints = joints or JointEffects()
+        self.sensors = tuple(sensors)
+        self.pushes = tuple(pushes)
+        self.start = robot.vector(robot.home if start is None else start, "start")
+        for frame in [*(s.frame for s in sensors), *(p.frame for p in pushes), *robot.contact_radius]:
+            robot.frame_id(frame)
+        self.model = self._compile(physics_step)
+        self._sites = {name: self.model.site(name).id for name in self._observed_frames()}
+        self._movable = {
+            thing.name: self.model.body(thing.name).id
+            for thing in self.scene.things
+            if not isinstance(thing, Plane) and thing.mass > 0.0
+        }
+        self._contact_frames = {self.model.geom(_touch(frame)).id: frame for frame in robot.contact_radius}
+
+    # ------------------------------------------------------------------ Plant
+
+    def init(self) -> tuple[Measurement, World]:
+        data = mujoco.MjData(self.model)
+        data.qpos[: self.robot.n] = self.start
+        mujoco.mj_forward(self.model, data)
+        world = World(data, 0, {frame: np.zeros(6) for frame in self._contact_frames.values()}, frozenset())
+        self._read_contacts(world)
+        mujoco.mj_step1(self.model, data)
+        return self._measure(world, np.zeros(self.robot.n)), world
+
+    def step(self, command: Command, world: World) -> tuple[Measurement, World]:
+        limit = self.robot.torque_limit
+        torque = np.clip(command.torque, -limit, limit)
+        for last in range(self.substeps - 1, -1, -1):
+            self._apply(world, torque)
+            mujoco.mj_step2(self.model, world.data)
+            if last == 0:
+                self._read_contacts(world)
+            mujoco.mj_step1(self.model, world.data)
+        world.ticks += 1
+        return self._measure(world, torque), world
+
+    def truth(self, world: World) -> Truth:
+        n, data = self.robot.n, world.data
+        return Truth(
+            time=world.ticks * self.period,
+            q=data.qpos[:n].copy(),
+            v=data.qvel[:n].copy(),
+            torque=data.qfrc_applied[:n].copy(),
+            positions={name: data.site_xpos[site].copy() for name, site in self._sites.items()},
+            rotations={name: data.site_xmat[site].reshape(3, 3).copy() for name, site in self._sites.items()},
+            wrenches=dict(world.wrenches),
+            objects={
+                name: np.concatenate([data.xpos[body], data.xquat[body]]) for name, body in self._movable.items()
+            },
+        )
+
+    # ------------------------------------------------------------------ inside
+
+    def _observed_frames(self) -> list[str]:
+        """Every frame whose true pose is worth recording, in a fixed order, once each."""
+        frames = [frame.name for frame in self.robot.model.frames if frame.type.name in ("OP_FRAME", "BODY")]
+        frames += [*self.robot.contact_radius, *(s.frame for s in self.sensors), *(p.frame for p in self.pushes)]
+        return [name for name in dict.fromkeys(frames) if name != "universe"]
+
+    def _compile(self, physics_step: float) -> mujoco.MjModel:
+        spec = spec_from_robot(self.robot)
+        spec.option.timestep = physics_step
+        spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE | mujoco.mjtDisableBit.mjDSBL_AUTORESET
+        self._add_joint_effects(spec)
+        for frame, radius in self.robot.contact_radius.items():
+            site = spec.site(frame)
+            geom = site.parent.add_geom(
+                name=_touch(frame), type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=site.pos
+            )
+            geom.contype, geom.conaffinity, geom.mass, geom.rgba = 0, 0, 0.0, [0.20, 0.22, 0.25, 1.0]
+        for thing in self.scene.things:
+            geom = thing.add_to(spec)
+            geom.contype, geom.conaffinity = 0, 0
+        pairs = self._pairs() if self.scene.contact == "mujoco" else []
+        for a, b, _ in pairs:
+            add_pair(spec, f"{a}|{b}", a, b)
+        _add_light(spec)
+        try:
+            model = spec.compile()
+        except ValueError as error:
+            raise ConfigError(f"MuJoCo cannot build robot {self.robot.name!r} in this scene: {error}") from error
+        for a, b, thing in pairs:
+            apply_surface(model, f"{a}|{b}", thing.surface)
+        return model
+
+    def _pairs(self) -> list[tuple[str, str, Thing]]:
+        """Pairs of geoms that can touch, and the thing whose surface rules the contact."""
+        things = self.scene.things
+        pairs = [(_touch(frame), thing.name, thing) for frame in self.robot.contact_radius for thing in things]
+        movable = [thing for thing in things if not isinstance(thing, Plane) and thing.mass > 0.0]
+        pairs += [(thing.name, plane.name, thing) for thing in movable for plane in things if isinstance(plane, Plane)]
+        return pairs
+
+    def _add_joint_effects(self, spec: mujoco.MjSpec) -> None:
+        friction = np.broadcast_to(np.asarray(self.joints.friction, dtype=np.float64), (self.robot.n,))
+        damping = np.broadcast_to(np.asarray(self.joints.damping, dtype=np.float64), (self.robot.n,))
+        for index, name in enumerate(self.robot.joint_names):
+            joint = spec.joint(name)
+            joint.frictionloss = friction[index]
+            joint.damping = [damping[index], 0.0, 0.0]
+            if self.joints.compensation == "gravity":
+                spec.body(name).gravcomp = 1.0
+
+    def _apply(self, world: World, torque: Array) -> None:
+        n, data = self.robot.n, world.data
+        data.qfrc_applied[:] = 0.0
+        data.qfrc_applied[:n] = torque
+        if self.joints.compensation == "gravity+coriolis":
+            data.qfrc_applied[:n] += data.qfrc_bias[:n]
+        for push in self.pushes:
+            if push.at(data.time):
+                site = self._sites[push.frame]
+                body = int(self.model.site_bodyid[site])
+                force = np.array(push.force)
+                mujoco.mj_applyFT(
+                    self.model, data, force, np.zeros(3), data.site_xpos[site], body, data.qfrc_applied
+                )
+
+    def _read_contacts(self, world: World) -> None:
+        """Sums the contact forces on every contact frame."""
+        data = world.data
+        for wrench in world.wrenches.values():
+            wrench[:] = 0.0
+        touching: set[str] = set()
+        local = np.zeros(6)
+        for index in range(data.ncon):
+            contact = data.contact[index]
+            for geom, sign in ((int(contact.geom[0]), -1.0), (int(contact.geom[1]), 1.0)):
+                frame = self._contact_frames.get(geom)
+                if frame is None:
+                    continue
+                mujoco.mj_contactForce(self.model, data, index, local)
+                force = sign * (contact.frame.reshape(3, 3).T @ local[:3])
+                lever = contact.pos - data.site_xpos[self._sites[frame]]
+                world.wrenches[frame] += np.concatenate([force, np.cross(lever, force)])
+                touching.add(frame)
+        world.touching = frozenset(touching)
+
+    def _measure(self, world: World, torque: Array) -> Measurement:
+        n, data = self.robot.n, world.data
+        return Measurement(
+            time=world.ticks * self.period,
+            q=data.qpos[:n].copy(),
+            v=data.qvel[:n].copy(),
+            torque=torque.copy(),
+            torque_sent=torque,
+            wrenches=self._sensor_readings(world),
+        )
+
+    def _sensor_readings(self, world: World) -> Mapping[str, Array]:
+        data = world.data
+        readings: dict[str, Array] = {}
+        for sensor in self.sensors:
+            site = self._sites[sensor.frame]
+            R_world_sensor = data.site_xmat[site].reshape(3, 3)
+            wrench = np.array(world.wrenches.get(sensor.frame, np.zeros(6)))
+            reading = np.concatenate([R_world_sensor.T @ wrench[:3], R_world_sensor.T @ wrench[3:]])
+            if sensor.mass > 0.0:
+                reading += self._carried(sensor, site, data)
+            readings[sensor.frame] = reading
+        return readings
+
+    def _carried(self, sensor: ForceSensor, site: int, data: mujoco.MjData) -> Array:
+        """Weight and inertial force of the mass behind a sensor, at its frame and in its axes, (6,)."""
+        mujoco.mj_rnePostConstraint(self.model, data)
+        motion = np.zeros(6)  # angular first; linear acceleration minus gravity
+        mujoco.mj_objectAcceleration(self.model, data, mujoco.mjtObj.mjOBJ_SITE, site, motion, 1)
+        spin = np.zeros(6)
+        mujoco.mj_objectVelocity(self.model, data, mujoco.mjtObj.mjOBJ_SITE, site, spin, 1)
+        center = np.array(sensor.center)
+        acceleration = motion[3:] + np.cross(motion[:3], center) + np.cross(spin[:3], np.cross(spin[:3], center))
+        force = -sensor.mass * acceleration
+        return np.concatenate([force, np.cross(center, force)])
+
+
+def _touch(frame: str) -> str:
+    """Name of the geom with which a frame touches things."""
+    return f"touch:{frame}"
+
+
+def _substeps(period: float, physics_step: float) -> int:
+    if not (physics_step > 0.0 and period > 0.0):
+        raise ConfigError(f"period and physics step must be above zero, got {period} s and {physics_step} s")
+    ratio = period / physics_step
+    if abs(ratio - round(ratio)) > 1e-6 or round(ratio) < 1:
+        raise ConfigError(
+            f"the control period must be a whole multiple of the physics step, got {period:g} s and {physics_step:g} s"
+        )
+    return round(ratio)
+
+
+def _add_light(spec: mujoco.MjSpec) -> None:
+    spec.worldbody.add_light(pos=[1.0, -1.5, 3.0], dir=[-0.3, 0.45, -0.85], castshadow=False)
+    spec.worldbody.add_light(pos=[-1.5, -1.0, 2.0], dir=[0.5, 0.3, -0.6], castshadow=False)

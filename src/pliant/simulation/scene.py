@@ -1,0 +1,175 @@
+"""What stands around the robot: surfaces and bodies with stiffness and damping in physical units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import mujoco
+import numpy as np
+
+from pliant.errors import ConfigError, options
+from pliant.mujoco_model import VISUAL_GROUP, quaternion
+from pliant.spatial import Array, frame_with_z_along, rpy
+
+
+@dataclass(frozen=True)
+class Surface:
+    """How a thing feels to the touch.
+
+    Raises:
+        ConfigError: on construction, when a value is negative, not finite, or the stiffness is zero.
+    """
+
+    stiffness: float = 1e4
+    """N/m of penetration"""
+    damping: float = 1e2
+    """N s/m of penetration speed"""
+    friction: float = 0.5
+    """Coulomb coefficient; at rest where the contact law distinguishes"""
+    friction_moving: float | None = None
+    """Coulomb coefficient while sliding; None: the same"""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.stiffness) and self.stiffness > 0.0):
+            raise ConfigError(f"contact stiffness must be above zero (N/m), got {self.stiffness}")
+        for name in ("damping", "friction", "friction_moving"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value >= 0.0):
+                raise ConfigError(f"contact {name} must not be negative, got {value}")
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A half-space: floor, table or wall."""
+
+    name: str
+    point: tuple[float, float, float]
+    """m, a point of the surface"""
+    normal: tuple[float, float, float]
+    """pointing out of the material"""
+    surface: Surface = field(default_factory=Surface)
+    extent: tuple[float, float] = (1.0, 1.0)
+    """m, half sizes of the part that is drawn"""
+    rgba: tuple[float, float, float, float] = (0.80, 0.82, 0.85, 1.0)
+
+    def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
+        """Adds the half-space (invisible) and a thin plate that shows it. Returns the geom that touches."""
+        R = frame_with_z_along(self.normal)
+        position = np.array(self.point)
+        plate = spec.worldbody.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[*self.extent, 0.005],
+            pos=position - 0.005 * R[:, 2],
+            quat=quaternion(R),
+            rgba=list(self.rgba),
+        )
+        plate.contype, plate.conaffinity, plate.group = 0, 0, VISUAL_GROUP
+        geom = spec.worldbody.add_geom(
+            name=self.name, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], pos=position, quat=quaternion(R)
+        )
+        geom.rgba = [0, 0, 0, 0]
+        return geom
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box that can move, or one that cannot (mass 0)."""
+
+    name: str
+    size: tuple[float, float, float]
+    """m, full edge lengths"""
+    position: tuple[float, float, float]
+    """m, of its centre"""
+    mass: float = 1.0
+    """kg; 0: fixed to the world"""
+    rotation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """roll, pitch, yaw in rad"""
+    surface: Surface = field(default_factory=Surface)
+    rgba: tuple[float, float, float, float] = (0.55, 0.70, 0.86, 1.0)
+
+    def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
+        """Adds the body. Returns the geom that touches."""
+        body = _add_free_body(spec, self.name, self.position, rpy(*self.rotation), self.mass)
+        return body.add_geom(
+            name=self.name,
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[0.5 * edge for edge in self.size],
+            mass=self.mass,
+            rgba=list(self.rgba),
+        )
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A soft ball that can move, or one that cannot (mass 0)."""
+
+    name: str
+    radius: float
+    """m"""
+    position: tuple[float, float, float]
+    """m, of its centre"""
+    mass: float = 0.5
+    """kg; 0: fixed to the world"""
+    surface: Surface = field(default_factory=lambda: Surface(stiffness=1e3, damping=1e2))
+    rgba: tuple[float, float, float, float] = (0.86, 0.47, 0.45, 0.9)
+
+    def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
+        """Adds the body. Returns the geom that touches."""
+        body = _add_free_body(spec, self.name, self.position, np.eye(3), self.mass)
+        return body.add_geom(
+            name=self.name,
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[self.radius, 0.0, 0.0],
+            mass=self.mass,
+            rgba=list(self.rgba),
+        )
+
+
+Thing = Plane | Box | Ball
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything the robot can meet, and which law rules the contacts.
+
+    Raises:
+        ConfigError: on construction, when two things share a name or the law is unknown.
+    """
+
+    things: tuple[Thing, ...] = ()
+    contact: Literal["mujoco", "explicit"] = "mujoco"
+    """"mujoco": its soft constraints, given the stiffness exactly; "explicit": a force law with stiction, for stiff contacts"""
+
+    def __post_init__(self) -> None:
+        names = [thing.name for thing in self.things]
+        if len(set(names)) < len(names):
+            raise ConfigError(f"the things of a scene need different names, got {names}")
+        if self.contact not in ("mujoco", "explicit"):
+            raise ConfigError(f"unknown contact law {self.contact!r}; {options(['mujoco', 'explicit'], self.contact)}")
+
+
+def floor(height: float = 0.0, surface: Surface | None = None) -> Plane:
+    """A horizontal floor at a height in m."""
+    return Plane("floor", (0.0, 0.0, height), (0.0, 0.0, 1.0), surface or Surface(), (1.5, 1.5), (0.86, 0.87, 0.88, 1.0))
+
+
+def table(point: tuple[float, float, float], tilt: float = 0.0, surface: Surface | None = None) -> Plane:
+    """A table top through a point in m, tilted about the world's x axis by an angle in rad."""
+    normal = (0.0, -math.sin(tilt), math.cos(tilt))
+    return Plane("table", point, normal, surface or Surface(), (0.25, 0.25), (0.78, 0.70, 0.60, 1.0))
+
+
+def wall(x: float, surface: Surface | None = None) -> Plane:
+    """A wall that fills the space beyond x in m."""
+    return Plane("wall", (x, -0.6, 0.5), (-1.0, 0.0, 0.0), surface or Surface(), (0.35, 0.35), (0.60, 0.68, 0.74, 0.55))
+
+
+def _add_free_body(
+    spec: mujoco.MjSpec, name: str, position: tuple[float, float, float], R: Array, mass: float
+) -> mujoco.MjsBody:
+    body = spec.worldbody.add_body(name=name, pos=list(position), quat=quaternion(R))
+    if mass > 0.0:
+        body.add_freejoint(name=name)
+    return body
