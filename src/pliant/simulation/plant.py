@@ -115,8 +115,10 @@ class MujocoPlant(Plant[World]):
     def init(self) -> tuple[Measurement, World]:
         data = mujoco.MjData(self.model)
         data.qpos[: self.robot.n] = self.start
-        mujoco.mj_forward(self.model, data)
         world = World(data, 0, {frame: np.zeros(6) for frame in self._contact_frames.values()}, frozenset())
+        mujoco.mj_step1(self.model, data)
+        self._apply(world, np.zeros(self.robot.n))  # what the robot compensates by itself, before the first command
+        mujoco.mj_forward(self.model, data)
         self._read_contacts(world)
         mujoco.mj_step1(self.model, data)
         return self._measure(world, np.zeros(self.robot.n)), world
@@ -197,6 +199,9 @@ class MujocoPlant(Plant[World]):
         for index, name in enumerate(self.robot.joint_names):
             joint = spec.joint(name)
             joint.frictionloss = friction[index]
+            # MuJoCo's friction creeps below its limit; this viscosity is the largest that the step allows
+            joint.solref_friction = [0.0, -1.0 / spec.option.timestep]
+            joint.solimp_friction = [0.99, 0.99, 1e-3, 0.5, 2.0]
             joint.damping = [damping[index], 0.0, 0.0]
             if self.joints.compensation == "gravity":
                 spec.body(name).gravcomp = 1.0

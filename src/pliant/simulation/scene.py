@@ -161,9 +161,11 @@ def table(point: tuple[float, float, float], tilt: float = 0.0, surface: Surface
     return Plane("table", point, normal, surface or Surface(), (0.25, 0.25), (0.78, 0.70, 0.60, 1.0))
 
 
-def wall(x: float, surface: Surface | None = None) -> Plane:
-    """A wall that fills the space beyond x in m."""
-    return Plane("wall", (x, -0.6, 0.5), (-1.0, 0.0, 0.0), surface or Surface(), (0.35, 0.35), (0.60, 0.68, 0.74, 0.55))
+def wall(
+    point: tuple[float, float, float], normal: tuple[float, float, float] = (-1.0, 0.0, 0.0), surface: Surface | None = None
+) -> Plane:
+    """A wall through a point in m; `normal` points out of it, towards the robot."""
+    return Plane("wall", point, normal, surface or Surface(), (0.35, 0.35), (0.60, 0.68, 0.74, 0.55))
 
 
 def _add_free_body(

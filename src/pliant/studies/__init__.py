@@ -1,0 +1,1 @@
+"""Closed-loop studies: the only place that wires estimators, references, controllers and plants together."""

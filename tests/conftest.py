@@ -1,0 +1,32 @@
+"""Shared fixtures: robots, and one settings profile for every property test."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+from pliant.robot import Robot
+from pliant.robots import CATALOGUE, is_available
+
+settings.register_profile("pliant", deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+settings.load_profile("pliant")
+
+
+@pytest.fixture(scope="session")
+def lwr4() -> Robot:
+    return Robot.load("lwr4")
+
+
+@pytest.fixture(scope="session")
+def leg3() -> Robot:
+    return Robot.load("leg3")
+
+
+@pytest.fixture(scope="session")
+def iiwa14() -> Robot:
+    return Robot.load("iiwa14")
+
+
+def available_robots() -> list[str]:
+    """Catalogue names whose files are installed."""
+    return [name for name, entry in CATALOGUE.items() if is_available(entry)]
