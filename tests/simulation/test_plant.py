@@ -56,7 +56,7 @@ def leg_plant(robot: Robot, scene: Scene, step: float = 1e-4, **options: object)
 
 @pytest.mark.parametrize("stiffness", [1e3, 1e4, 1e5])
 def test_contact_stiffness_is_in_newton_per_metre(leg3: Robot, stiffness: float) -> None:
-    scene = Scene((floor(0.0, Surface(stiffness, 2 * np.sqrt(stiffness), friction=0.0)),))
+    scene = Scene((floor(0.0, Surface(stiffness, 4 * np.sqrt(stiffness), friction=0.0)),))
     plant = leg_plant(leg3, scene)
     world, wrench = press(plant, 20.0, 2.0)
     penetration = 0.02 - plant.truth(world).positions["foot"][2]

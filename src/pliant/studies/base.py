@@ -1,0 +1,101 @@
+"""What a study is: typed cases, a way to build each, metrics from its log, and figures."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from pydantic import Field
+
+from pliant.errors import ConfigError, options
+from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
+from pliant.robot import Robot
+from pliant.studies.config import Config
+from pliant.telemetry.log import Log
+from pliant.telemetry.metrics import Metric
+from pliant.telemetry.schema import Channel
+
+
+class CaseConfig(Config):
+    """What every case of every study has."""
+
+    case: str = Field(description="name of the case")
+    controller: str = Field(description="name of the controller")
+    robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
+    seed: int = Field(default=0, ge=0, description="of every random draw")
+    duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+
+
+C = TypeVar("C", bound=CaseConfig)
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A wired loop, ready to run."""
+
+    robot: Robot
+    plant: Plant[Any]
+    estimator: Estimator[Any]
+    source: ReferenceSource[Any]
+    controller: Controller[Any]
+    channels: tuple[Channel, ...] = ()
+    """units of what the controller and the source report"""
+    warnings: tuple[str, ...] = ()
+    """what is unsafe about the parameters, in sentences"""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came out of one run."""
+
+    config: CaseConfig
+    metrics: Mapping[str, Metric]
+    failure: str | None = None
+    """why it stopped early; None if it ran to its end"""
+    warnings: tuple[str, ...] = ()
+    log: Path | None = None
+    figures: tuple[Path, ...] = field(default=())
+
+
+class Study(ABC, Generic[C]):
+    """A family of cases that are built, measured and drawn the same way."""
+
+    name: str
+    title: str
+    """one line, for people"""
+    cases: Mapping[str, C]
+    """name → its configuration; the first is the default"""
+
+    def case(self, name: str) -> C:
+        """Configuration of a case. Raises ConfigError, with the cases there are, if it does not exist."""
+        if name not in self.cases:
+            raise ConfigError(f"study {self.name!r} has no case {name!r}; {options(self.cases, name)}")
+        return self.cases[name]
+
+    def variants(self) -> Sequence[C]:
+        """Every configuration of the full study, control arms included; by default the cases themselves."""
+        return list(self.cases.values())
+
+    @property
+    @abstractmethod
+    def controllers(self) -> Sequence[str]:
+        """Names that `controller` can take."""
+
+    @abstractmethod
+    def build(self, config: C) -> Experiment:
+        """Wires the loop of a case."""
+
+    @abstractmethod
+    def metrics(self, config: C, log: Log) -> dict[str, Metric]:
+        """Measures a run; the paper's number and the target stand beside where there is one."""
+
+    @abstractmethod
+    def figures(self, config: C, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+        """Draws one run."""
+
+    def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
+        """Draws what only several runs together show."""
+        return []
