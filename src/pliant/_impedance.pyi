@@ -1,0 +1,62 @@
+"""Compiled core of the stack of fractal impedance tasks. `pliant.controllers.stack` is its face; use that."""
+
+from numpy import float64
+from numpy.typing import NDArray
+
+class Stack:
+    """Phase logic, force laws, torque and energy ledger of several tasks. Holds no state between two steps.
+
+    Wrong sizes and names raise ValueError.
+    """
+
+    def __init__(
+        self,
+        law: str,
+        period: float,
+        rate_gain: float,
+        noise_gain: float,
+        hold_limit: float,
+        torque_limit: NDArray[float64],
+        tasks: list[tuple[int, str, float, float, list[bool]]],
+    ) -> None:
+        """
+        Args:
+            law: name of a force law.
+            period: s.
+            rate_gain: share of a new difference in the filtered rate.
+            noise_gain: share of a new sample in the noise variance.
+            hold_limit: s.
+            torque_limit: (n,) N·m, may be infinite.
+            tasks: (axes, profile, rate floor in m/s, rate floor in rad/s, which joints move the frame) each.
+        """
+
+    @property
+    def state_size(self) -> int: ...
+    @property
+    def output_size(self) -> int: ...
+    def step(
+        self,
+        memory: NDArray[float64],
+        out: NDArray[float64],
+        q: NDArray[float64],
+        J: NDArray[float64],
+        actual: tuple[NDArray[float64] | None, ...],
+        desired: tuple[NDArray[float64] | None, ...],
+        bias: NDArray[float64] | None,
+        retune: tuple[tuple[int, NDArray[float64]], ...] | None,
+    ) -> int:
+        """One tick; changes `memory` (state_size) and fills `out` (output_size).
+
+        Args:
+            memory: state, zeros before the first step.
+            out: torque, clamped torque, then the channels of `channel_table`.
+            q: (n,) rad.
+            J: (6, n) column-major, joint Jacobian at the world's origin, linear part first.
+            actual: position (3,), R_world_frame (3, 3) of each task in turn.
+            desired: the same of the reference; a rotation may be None.
+            bias: (n,) N·m added to the torque.
+            retune: (task, stiffness ‖ force_max ‖ range ‖ linear_range) for each tuning that changes now.
+
+        Returns:
+            0, or what is not finite (then nothing was changed): 1 for q, 100 + i for frame i, 200 + i for its reference.
+        """

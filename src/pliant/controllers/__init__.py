@@ -1,0 +1,9 @@
+"""Controllers that answer within one tick: fractal impedances, their stack, and control arms to compare with."""
+
+from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.fractal_impedance import FractalImpedance
+from pliant.controllers.profiles import ForceProfile, Shape
+from pliant.controllers.stack import Stack, StackState
+from pliant.controllers.task import FrameTask
+
+__all__ = ["ForceProfile", "FractalImpedance", "FrameTask", "Law", "PhaseSettings", "Shape", "Stack", "StackState"]

@@ -1,0 +1,168 @@
+"""The fractal attractor: when an axis diverges, when it converges, and which force it gives.
+
+This module is the readable form. The stack runs the same logic compiled (`cpp/impedance`); the two are compared tick by tick.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from pliant.controllers.profiles import ForceProfile
+from pliant.errors import ConfigError
+from pliant.spatial import Array
+
+
+class Law(StrEnum):
+    """Which force an axis gives on the way back to its target."""
+
+    CAPPED = "capped"
+    """passive for any switching between divergence and convergence, bounded by F_max"""
+    HAPFIC = "hapfic"
+    """[HapFIC] eq. 1 as printed; creates energy when the convergence is interrupted"""
+    STACK_PRINTED = "stack-printed"
+    """[Stack] Algorithm 1 as printed; its sign pushes away from the target, it never settles"""
+    STACK_CORRECTED = "stack-corrected"
+    """[Stack] Algorithm 1 with the sign turned round; jumps where convergence starts, exceeds F_max past saturation"""
+    SPRING = "spring"
+    """no attractor: the profile alone, a spring without damping"""
+
+
+@dataclass(frozen=True)
+class PhaseSettings:
+    """How an axis decides between divergence and convergence."""
+
+    rate_cutoff: float = 80.0
+    """Hz, low-pass on the rate of the error"""
+    rate_floor: float = 0.5e-3
+    """m/s: rates below it do not tell the direction"""
+    rate_floor_angular: float = 0.5e-3
+    """rad/s"""
+    noise_time: float = 0.2
+    """s over which the noise of the error is learned; the threshold is at least 3σ of the filtered rate"""
+    hold_limit: float = 0.030
+    """s for which a phase is held while the rate is too small to tell; then the axis diverges"""
+
+    def __post_init__(self) -> None:
+        for name in ("rate_cutoff", "rate_floor", "rate_floor_angular", "noise_time"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ConfigError(f"{name} must be finite and above zero, got {value}")
+        if not self.hold_limit >= 0.0:
+            raise ConfigError(f"hold_limit must not be negative, got {self.hold_limit}")
+
+    def rate_gain(self, period: float) -> float:
+        """Share of a new difference in the filtered rate, for a period in s."""
+        return -math.expm1(-2.0 * math.pi * self.rate_cutoff * period)
+
+    def noise_gain(self, period: float) -> float:
+        """Share of a new sample in the noise variance, for a period in s."""
+        return -math.expm1(-period / self.noise_time)
+
+    def noise_to_rate(self, period: float) -> float:
+        """1/s: standard deviation of the filtered rate per standard deviation of a white error."""
+        gain = self.rate_gain(period)
+        return gain / period * math.sqrt(2.0 / (2.0 - gain))
+
+
+@dataclass(frozen=True)
+class AttractorState:
+    """State of `k` axes between two ticks. All arrays (k,)."""
+
+    turning: Array
+    """x_m, m or rad: error at which the convergence started; the current error while diverging"""
+    converging: Array
+    """bool"""
+    hold: Array
+    """s for which the rate has been too small to tell the direction"""
+    errors: tuple[Array, Array, Array]
+    """the last three errors, newest first, m or rad"""
+    rate: Array
+    """low-passed d(error)/dt, m/s or rad/s"""
+    noise: Array
+    """variance of the noise of the error, m² or rad²"""
+
+
+@dataclass(frozen=True)
+class Attractor:
+    """Phase logic and force law of `k` axes at a fixed period. Stateless: the state goes in and comes out."""
+
+    period: float
+    """s"""
+    floor: Array
+    """(k,) smallest rate that tells a direction, m/s or rad/s"""
+    law: Law = Law.CAPPED
+    settings: PhaseSettings = PhaseSettings()
+
+    def init(self, error: Array) -> AttractorState:
+        """Starts diverging, with x_m = x̃. Args: error (k,) m or rad."""
+        zero = np.zeros_like(error)
+        noise = (self.floor / (3.0 * self.settings.noise_to_rate(self.period))) ** 2
+        return AttractorState(error, zero > 0.0, zero, (error, error, error), zero, noise)
+
+    def step(self, profile: ForceProfile, error: Array, state: AttractorState) -> tuple[Array, AttractorState]:
+        """The force (k,) in N or N·m for the error of this tick (k,), and the next state."""
+        state = self._sense(error, state)
+        state = self._switch(error, state)
+        return self.force(profile, error, state), replace(state, errors=(error, *state.errors[:2]))
+
+    def threshold(self, state: AttractorState) -> Array:
+        """ε (k,), m/s or rad/s: rates of |x̃| below it do not tell the direction."""
+        return np.maximum(self.floor, 3.0 * self.settings.noise_to_rate(self.period) * np.sqrt(state.noise))
+
+    def force(self, profile: ForceProfile, error: Array, state: AttractorState) -> Array:
+        """h (k,), N or N·m, for a given phase."""
+        turning = np.where(state.converging, state.turning, 1.0)  # 1.0: any number that is not zero
+        back = converging_force(self.law, profile, error, turning)
+        return np.where(state.converging, back, profile.force(error))
+
+    def _sense(self, error: Array, state: AttractorState) -> AttractorState:
+        last, last_2, last_3 = state.errors
+        # The third difference of a smooth motion is negligible; that of white noise has 20 times its variance. A step of the
+        # reference or an impact is an outlier: clipped to three standard deviations, it hardly moves the estimate.
+        third = error - 3.0 * last + 3.0 * last_2 - last_3
+        floor = (self.floor / (3.0 * self.settings.noise_to_rate(self.period))) ** 2
+        sample = np.minimum(third**2 / 20.0, 9.0 * state.noise + floor)
+        noise = state.noise + self.settings.noise_gain(self.period) * (sample - state.noise)
+        rate = state.rate + self.settings.rate_gain(self.period) * ((error - last) / self.period - state.rate)
+        return replace(state, noise=noise, rate=rate)
+
+    def _switch(self, error: Array, state: AttractorState) -> AttractorState:
+        threshold = self.threshold(state)
+        outward = np.where(error > 0.0, state.rate, -state.rate)
+        beyond = (error * state.turning <= 0.0) | (np.abs(error) >= np.abs(state.turning))
+        beyond = beyond | (self.law is Law.SPRING)
+        out, back = beyond | (outward > threshold), ~beyond & (outward < -threshold)
+        hold = np.where(out | back, 0.0, state.hold + self.period)
+        converging = back | (~out & state.converging & (hold <= self.settings.hold_limit))
+        return replace(state, converging=converging, hold=hold, turning=np.where(converging, state.turning, error))
+
+
+def converging_force(law: Law, profile: ForceProfile, error: Array, turning: Array) -> Array:
+    """Force on the way back, at an error between zero and the turning point.
+
+    Args:
+        law: which law; `spring` gives the profile's force.
+        profile: of (k,) axes.
+        error: x̃ (..., k), m or rad.
+        turning: x_m (..., k), m or rad, not zero.
+
+    Returns:
+        h (..., k), N or N·m. [HapFIC] eq. 1 and [Stack] Algorithm 1 for the laws of that name. The capped law is
+        h = sgn(x_m) sgn(s − ½) min(|F(x_m)| (2m − 1), |F(m x_m)|), with s = x̃/x_m and m = max(s, 1 − s).
+    """
+    share = error / turning
+    peak = profile.magnitude(np.abs(turning))
+    if law is Law.CAPPED:
+        m = np.maximum(share, 1.0 - share)
+        cap = np.minimum(peak * (2.0 * m - 1.0), profile.magnitude(m * np.abs(turning)))
+        return np.where(share >= 0.5, 1.0, -1.0) * np.copysign(1.0, turning) * cap
+    if law is Law.HAPFIC:
+        return np.copysign(1.0, turning) * peak * (2.0 * share - 1.0)
+    if law is Law.SPRING:
+        return profile.force(error)
+    towards = 4.0 * profile.energy(turning) / turning**2 * (error - 0.5 * turning)
+    return towards if law is Law.STACK_CORRECTED else -towards

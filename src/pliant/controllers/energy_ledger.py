@@ -1,0 +1,92 @@
+"""The energy ledger of a stack of impedances: which channels it has, and what they mean.
+
+Every tick books, for each axis, the work h·Δx̃ of the force that was held during the last period. From it follow
+
+    supplied   by the moving references     Σ h·Δx_d     (for a rotation Σ (J_l⁻ᵀ h)·Δθ_d)
+    delivered  to the robot                 supplied − Σ h·Δx̃
+    tuning     by changes of the parameters storage after minus before, at the same error
+    stored     in the springs               Σ E(x̃)
+    dissipated by the attractors            Σ (∫h dx̃ + tuning − (E(x̃) − E(x̃_0)))
+    clamped    kept back by torque limits   Σ (wanted − sent)·Δq
+
+so that supplied + tuning = delivered + dissipated + (stored − stored at the start) at every tick. What an axis dissipates is
+its storage margin: a passive law keeps it from falling below zero, but for the work that sampling lets through.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from pliant.spatial import Array
+
+TOTALS = ("stored", "supplied", "delivered", "dissipated", "tuning", "clamped")
+"""channels `energy/…` of the whole stack, J"""
+AXIS_ROWS = (
+    ("force", "N, N·m"),  # h, the force conjugate to the error
+    ("error", "m, rad"),  # target minus actual
+    ("rate", "m/s, rad/s"),  # filtered rate of the error
+    ("rate_threshold", "m/s, rad/s"),  # ε of the phase logic
+    ("phase", "1"),  # 0 diverging, 1 converging
+    ("turning_point", "m, rad"),  # x_m
+    ("storage_margin", "J"),  # ∫h dx̃ + tuning − (E(x̃) − E(x̃_0))
+)
+"""channels `LABEL/…` with one entry per axis: name, unit"""
+TASK_SUMS = ("energy_stored", "energy_supplied", "energy_dissipated", "energy_tuning")
+"""channels `LABEL/…` of one task, J"""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Where a channel stands in the output of a step."""
+
+    start: int
+    size: int
+    """0 for a scalar"""
+    unit: str
+
+
+def channel_table(joints: int, tasks: Sequence[tuple[str, int]]) -> dict[str, Channel]:
+    """Name → place of every channel of a stack.
+
+    Args:
+        joints: number of joints; torque and clamped torque come first.
+        tasks: (label, axes) of each task.
+    """
+    table: dict[str, Channel] = {}
+    place = 2 * joints
+    for name in TOTALS:
+        table[f"energy/{name}"] = Channel(place, 0, "J")
+        place += 1
+    for label, axes in tasks:
+        table[f"{label}/wrench"] = Channel(place, 6, "N, N·m")
+        place += 6
+        for name, unit in AXIS_ROWS:
+            table[f"{label}/{name}"] = Channel(place, axes, unit)
+            place += axes
+        for name in TASK_SUMS:
+            table[f"{label}/{name}"] = Channel(place, 0, "J")
+            place += 1
+    return table
+
+
+class Diagnostics(Mapping[str, "float | Array"]):
+    """Channels of one tick, read from one array when somebody asks: making it costs no more than a pointer."""
+
+    __slots__ = ("_table", "_values")
+
+    def __init__(self, table: Mapping[str, Channel], values: Array) -> None:
+        self._table = table
+        self._values = values
+
+    def __getitem__(self, name: str) -> float | Array:
+        channel = self._table[name]
+        if channel.size == 0:
+            return float(self._values[channel.start])
+        return self._values[channel.start : channel.start + channel.size]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._table)
+
+    def __len__(self) -> int:
+        return len(self._table)

@@ -1,0 +1,191 @@
+"""A stack of passive task-space controllers: joint torques from fractal impedances at several frames."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from pliant import _impedance
+from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.energy_ledger import Channel, Diagnostics, channel_table
+from pliant.controllers.profiles import linear_range
+from pliant.controllers.task import FrameTask
+from pliant.errors import ConfigError, ShapeError, SignalError, options
+from pliant.interfaces import Controller
+from pliant.robot import Robot
+from pliant.signals import Command, Estimate, ImpedanceTuning, Reference, TaskReference
+from pliant.spatial import Array
+
+
+@dataclass(frozen=True, slots=True)
+class StackState:
+    """State between two ticks: phases, turning points, filters and ledger in one array, and the tunings in force."""
+
+    memory: Array
+    tunings: tuple[ImpedanceTuning | None, ...]
+    workspace: _Workspace
+    """scratch memory of the kinematics; nothing in it outlives a step"""
+
+
+class _Workspace:
+    """pinocchio's data, and views into it that stay valid while it lives."""
+
+    __slots__ = ("J", "data", "poses")
+
+    def __init__(self, model: pin.Model, frames: Sequence[int]) -> None:
+        self.data = model.createData()
+        self.J: Array = self.data.J
+        poses = [self.data.oMf[frame] for frame in frames]
+        self.poses: tuple[Any, ...] = tuple(part for pose in poses for part in (pose.translation, pose.rotation))
+
+
+class Stack(Controller[StackState]):
+    """τ = Σ J_iᵀ h_i, each h_i a fractal impedance at its own frame, then clamped to the torque limits ([Stack] eq. 5).
+
+    It needs no inverse, no projection and, without gravity compensation, no inertia. Orientation errors are
+    e = log(R_d Rᵀ); the moment is m = J_l⁻¹(e) h, so that m·ω = −h·ė and the port stays passive with unequal gains.
+
+    Forces come from position errors alone: `TaskReference.velocity`, `.acceleration` and `.wrench` are not used. A task whose
+    reference has no rotation leaves the orientation free for as long.
+
+    `Command.diagnostics` holds the energy ledger and the state of every axis; `units` names the channels and their units.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        tasks: Sequence[FrameTask],
+        period: float,
+        *,
+        law: Law = Law.CAPPED,
+        phases: PhaseSettings | None = None,
+        gravity_compensation: bool = False,
+    ) -> None:
+        """
+        Args:
+            robot: kinematics and torque limits.
+            tasks: frames to hold, each with its own label.
+            period: s between two steps.
+            law: force on the way back; `capped` unless you compare.
+            phases: thresholds of the phase logic.
+            gravity_compensation: adds the model's gravity torque; leave it off where the robot compensates itself.
+
+        Raises:
+            ConfigError: no task, two tasks of one label, or a period that is not above zero.
+            RobotError: a frame that the robot does not have.
+        """
+        if not (math.isfinite(period) and period > 0.0):
+            raise ConfigError(f"the control period must be finite and above zero, got {period} s")
+        labels = [task.label for task in tasks]
+        if not tasks or len(set(labels)) != len(labels):
+            raise ConfigError(f"a stack needs one or more tasks with different labels, got {labels}")
+        self.robot = robot
+        self.tasks = tuple(tasks)
+        self.period = period
+        self.law = Law(law)
+        self.phases = phases or PhaseSettings()
+        self.gravity_compensation = gravity_compensation
+        self._frames = [robot.frame_id(task.frame) for task in tasks]
+        self._core = _impedance.Stack(
+            law=self.law.value,
+            period=period,
+            rate_gain=self.phases.rate_gain(period),
+            noise_gain=self.phases.noise_gain(period),
+            hold_limit=self.phases.hold_limit,
+            torque_limit=robot.torque_limit,
+            tasks=[
+                (task.axes, task.shape.value, self.phases.rate_floor, self.phases.rate_floor_angular, _moves(robot, frame))
+                for task, frame in zip(self.tasks, self._frames, strict=True)
+            ],
+        )
+        self._table = channel_table(robot.n, [(task.label, task.axes) for task in self.tasks])
+
+    @property
+    def channels(self) -> Mapping[str, Channel]:
+        """Name → place, size and unit of every channel in `Command.diagnostics`."""
+        return self._table
+
+    def init(self, estimate: Estimate) -> StackState:
+        """Every axis starts diverging, with an empty ledger. Raises ShapeError for a robot with other joints."""
+        self.robot.vector(estimate.q, "q")
+        memory = np.zeros(self._core.state_size)
+        return StackState(memory, (None,) * len(self.tasks), _Workspace(self.robot.model, self._frames))
+
+    def step(self, estimate: Estimate, reference: Reference, state: StackState) -> tuple[Command, StackState]:
+        """The torque for the next period, and the next state.
+
+        Raises:
+            ConfigError: the reference has no task for a frame of the stack.
+            ShapeError: q, a pose or a tuning of the wrong size.
+            SignalError: q or a pose that is not finite.
+        """
+        model, work = self.robot.model, state.workspace
+        desired, tunings = self._read(reference, state.tunings)
+        retune = None if tunings is state.tunings else self._changed(state.tunings, tunings)
+        memory, out = state.memory.copy(), np.empty(self._core.output_size)
+        try:
+            pin.computeJointJacobians(model, work.data, estimate.q)
+            for frame in self._frames:
+                pin.updateFramePlacement(model, work.data, frame)
+            bias = pin.computeGeneralizedGravity(model, work.data, estimate.q) if self.gravity_compensation else None
+            code = self._core.step(memory, out, estimate.q, work.J, work.poses, desired, bias, retune)
+        except (ValueError, TypeError, RuntimeError) as error:
+            raise ShapeError(f"the stack of {self.robot.name!r} with {self.robot.n} joints got {error}") from error
+        if code:
+            raise SignalError(self._not_finite(code, estimate))
+        n = self.robot.n
+        command = Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out))
+        return command, StackState(memory, tunings, work)
+
+    def _read(
+        self, reference: Reference, last: tuple[ImpedanceTuning | None, ...]
+    ) -> tuple[tuple[Any, ...], tuple[ImpedanceTuning | None, ...]]:
+        """Targets (position, rotation) of each task in the core's order, and the tunings: `last` itself if none changed."""
+        desired: list[Any] = []
+        tunings = last
+        for i, task in enumerate(self.tasks):
+            target = _target(reference, i, task.frame)
+            desired += (target.position, target.rotation)
+            tuning = target.tuning or task.tuning
+            if tuning is not tunings[i]:
+                tunings = (*tunings[:i], tuning, *tunings[i + 1 :])
+        return tuple(desired), tunings
+
+    def _changed(
+        self, last: tuple[ImpedanceTuning | None, ...], tunings: tuple[ImpedanceTuning | None, ...]
+    ) -> tuple[tuple[int, Array], ...]:
+        changes: list[tuple[int, Array]] = []
+        for i, (old, new) in enumerate(zip(last, tunings, strict=True)):
+            if new is None or new is old:
+                continue
+            if new.axes != self.tasks[i].axes:
+                raise ShapeError(f"task {self.tasks[i].label!r} has {self.tasks[i].axes} axes, its new tuning {new.axes}")
+            changes.append((i, np.concatenate([new.stiffness, new.force_max, new.range, linear_range(new)])))
+        return tuple(changes)
+
+    def _not_finite(self, code: int, estimate: Estimate) -> str:
+        if code < 200:
+            return f"the measured position must be finite, got q = {np.asarray(estimate.q).tolist()}"
+        return f"the reference of frame {self.tasks[code - 200].frame!r} must be finite, its position or rotation is not"
+
+
+def _target(reference: Reference, place: int, frame: str) -> TaskReference:
+    tasks = reference.tasks
+    if place < len(tasks) and tasks[place].frame == frame:  # the usual case: same order
+        return tasks[place]
+    for task in tasks:
+        if task.frame == frame:
+            return task
+    raise ConfigError(f"the reference has no task for frame {frame!r}; {options([t.frame for t in tasks], frame)}")
+
+
+def _moves(robot: Robot, frame: int) -> list[bool]:
+    """Which joints (n) move a frame."""
+    joint = robot.model.frames[frame].parentJoint
+    above = {robot.model.joints[j].idx_v for j in robot.model.supports[joint] if j > 0}
+    return [j in above for j in range(robot.n)]
