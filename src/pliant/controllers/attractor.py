@@ -1,6 +1,7 @@
 """The fractal attractor: when an axis diverges, when it converges, and which force it gives.
 
-This module is the readable form. The stack runs the same logic compiled (`cpp/impedance`); the two are compared tick by tick.
+This module is the readable form. The stack runs the same logic compiled (`cpp/impedance`); tests compare them tick by
+tick.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
+import numpy.typing as npt
 
 from pliant.controllers.profiles import ForceProfile
 from pliant.errors import ConfigError
@@ -68,13 +70,16 @@ class PhaseSettings:
         return gain / period * math.sqrt(2.0 / (2.0 - gain))
 
 
+Flags = npt.NDArray[np.bool_]
+
+
 @dataclass(frozen=True)
 class AttractorState:
     """State of `k` axes between two ticks. All arrays (k,)."""
 
     turning: Array
     """x_m, m or rad: error at which the convergence started; the current error while diverging"""
-    converging: Array
+    converging: Flags
     """bool"""
     hold: Array
     """s for which the rate has been too small to tell the direction"""
@@ -101,7 +106,7 @@ class Attractor:
         """Starts diverging, with x_m = x̃. Args: error (k,) m or rad."""
         zero = np.zeros_like(error)
         noise = (self.floor / (3.0 * self.settings.noise_to_rate(self.period))) ** 2
-        return AttractorState(error, zero > 0.0, zero, (error, error, error), zero, noise)
+        return AttractorState(error, np.zeros(error.shape, dtype=np.bool_), zero, (error, error, error), zero, noise)
 
     def step(self, profile: ForceProfile, error: Array, state: AttractorState) -> tuple[Array, AttractorState]:
         """The force (k,) in N or N·m for the error of this tick (k,), and the next state."""
@@ -121,8 +126,8 @@ class Attractor:
 
     def _sense(self, error: Array, state: AttractorState) -> AttractorState:
         last, last_2, last_3 = state.errors
-        # The third difference of a smooth motion is negligible; that of white noise has 20 times its variance. A step of the
-        # reference or an impact is an outlier: clipped to three standard deviations, it hardly moves the estimate.
+        # The third difference of a smooth motion is negligible; that of white noise has 20 times its variance. A step
+        # of the reference or an impact is an outlier: clipped to three deviations, it hardly moves the estimate.
         third = error - 3.0 * last + 3.0 * last_2 - last_3
         floor = (self.floor / (3.0 * self.settings.noise_to_rate(self.period))) ** 2
         sample = np.minimum(third**2 / 20.0, 9.0 * state.noise + floor)

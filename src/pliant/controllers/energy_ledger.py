@@ -9,8 +9,9 @@ Every tick books, for each axis, the work h·Δx̃ of the force that was held du
     dissipated by the attractors            Σ (∫h dx̃ + tuning − (E(x̃) − E(x̃_0)))
     clamped    kept back by torque limits   Σ (wanted − sent)·Δq
 
-so that supplied + tuning = delivered + dissipated + (stored − stored at the start) at every tick. What an axis dissipates is
-its storage margin: a passive law keeps it from falling below zero, but for the work that sampling lets through.
+so that supplied + tuning = delivered + dissipated + (stored − stored at the start) at every tick. What an axis
+dissipates is its storage margin: a passive law keeps it from falling below zero, but for the work that sampling lets
+through.
 """
 
 from __future__ import annotations

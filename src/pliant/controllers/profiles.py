@@ -95,9 +95,7 @@ def linear_range(tuning: ImpedanceTuning) -> Array:
     """x_0 (k,) of a tuning, m or rad: its own, or min(0.95 x_b, 0.95 F_max/K_0)."""
     if tuning.linear_range is not None:
         return tuning.linear_range
-    reach = np.divide(
-        tuning.force_max, tuning.stiffness, out=np.zeros_like(tuning.range), where=tuning.stiffness > 0.0
-    )
+    reach = np.divide(tuning.force_max, tuning.stiffness, out=np.zeros_like(tuning.range), where=tuning.stiffness > 0.0)
     return LINEAR_SHARE * np.minimum(tuning.range, reach)
 
 

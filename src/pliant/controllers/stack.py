@@ -35,11 +35,11 @@ class StackState:
 class _Workspace:
     """pinocchio's data, and views into it that stay valid while it lives."""
 
-    __slots__ = ("J", "data", "poses")
+    __slots__ = ("data", "jacobian", "poses")
 
     def __init__(self, model: pin.Model, frames: Sequence[int]) -> None:
         self.data = model.createData()
-        self.J: Array = self.data.J
+        self.jacobian: Array = self.data.J
         poses = [self.data.oMf[frame] for frame in frames]
         self.poses: tuple[Any, ...] = tuple(part for pose in poses for part in (pose.translation, pose.rotation))
 
@@ -50,10 +50,10 @@ class Stack(Controller[StackState]):
     It needs no inverse, no projection and, without gravity compensation, no inertia. Orientation errors are
     e = log(R_d Rᵀ); the moment is m = J_l⁻¹(e) h, so that m·ω = −h·ė and the port stays passive with unequal gains.
 
-    Forces come from position errors alone: `TaskReference.velocity`, `.acceleration` and `.wrench` are not used. A task whose
-    reference has no rotation leaves the orientation free for as long.
+    Forces come from position errors alone: `TaskReference.velocity`, `.acceleration` and `.wrench` are not used. A task
+    whose reference has no rotation leaves the orientation free for as long.
 
-    `Command.diagnostics` holds the energy ledger and the state of every axis; `units` names the channels and their units.
+    `Command.diagnostics` holds the energy ledger and the state of every axis; `channels` says what is in it.
     """
 
     def __init__(
@@ -99,7 +99,13 @@ class Stack(Controller[StackState]):
             hold_limit=self.phases.hold_limit,
             torque_limit=robot.torque_limit,
             tasks=[
-                (task.axes, task.shape.value, self.phases.rate_floor, self.phases.rate_floor_angular, _moves(robot, frame))
+                (
+                    task.axes,
+                    task.shape.value,
+                    self.phases.rate_floor,
+                    self.phases.rate_floor_angular,
+                    _moves(robot, frame),
+                )
                 for task, frame in zip(self.tasks, self._frames, strict=True)
             ],
         )
@@ -133,7 +139,7 @@ class Stack(Controller[StackState]):
             for frame in self._frames:
                 pin.updateFramePlacement(model, work.data, frame)
             bias = pin.computeGeneralizedGravity(model, work.data, estimate.q) if self.gravity_compensation else None
-            code = self._core.step(memory, out, estimate.q, work.J, work.poses, desired, bias, retune)
+            code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune)
         except (ValueError, TypeError, RuntimeError) as error:
             raise ShapeError(f"the stack of {self.robot.name!r} with {self.robot.n} joints got {error}") from error
         if code:
@@ -145,7 +151,7 @@ class Stack(Controller[StackState]):
     def _read(
         self, reference: Reference, last: tuple[ImpedanceTuning | None, ...]
     ) -> tuple[tuple[Any, ...], tuple[ImpedanceTuning | None, ...]]:
-        """Targets (position, rotation) of each task in the core's order, and the tunings: `last` itself if none changed."""
+        """Targets (position, rotation) of each task in the core's order; the tunings, `last` itself if none changed."""
         desired: list[Any] = []
         tunings = last
         for i, task in enumerate(self.tasks):
@@ -164,14 +170,18 @@ class Stack(Controller[StackState]):
             if new is None or new is old:
                 continue
             if new.axes != self.tasks[i].axes:
-                raise ShapeError(f"task {self.tasks[i].label!r} has {self.tasks[i].axes} axes, its new tuning {new.axes}")
+                raise ShapeError(
+                    f"task {self.tasks[i].label!r} has {self.tasks[i].axes} axes, its new tuning {new.axes}"
+                )
             changes.append((i, np.concatenate([new.stiffness, new.force_max, new.range, linear_range(new)])))
         return tuple(changes)
 
     def _not_finite(self, code: int, estimate: Estimate) -> str:
         if code < 200:
             return f"the measured position must be finite, got q = {np.asarray(estimate.q).tolist()}"
-        return f"the reference of frame {self.tasks[code - 200].frame!r} must be finite, its position or rotation is not"
+        return (
+            f"the reference of frame {self.tasks[code - 200].frame!r} must be finite, its position or rotation is not"
+        )
 
 
 def _target(reference: Reference, place: int, frame: str) -> TaskReference:

@@ -29,7 +29,9 @@ class FrameTask:
 
     def __post_init__(self) -> None:
         if self.tuning.axes not in (3, 6):
-            raise ShapeError(f"a task has 3 axes, or 6 with rotation; the tuning of {self.frame!r} has {self.tuning.axes}")
+            raise ShapeError(
+                f"a task has 3 axes, or 6 with rotation; the tuning of {self.frame!r} has {self.tuning.axes}"
+            )
         if not self.label:
             object.__setattr__(self, "label", self.frame)
         if not self.label or "/" in self.label:
