@@ -1,0 +1,1 @@
+"""Where the robot should be and how hard it should press: trajectories, planners, posture, haptic exploration."""

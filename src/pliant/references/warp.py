@@ -1,0 +1,69 @@
+"""Clocks for trajectories: how the phase of a path runs with time."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from pliant.errors import ConfigError
+
+
+class Warp(ABC):
+    """Maps time in s to the phase φ in s at which a trajectory is read."""
+
+    @abstractmethod
+    def at(self, time: float) -> tuple[float, float, float]:
+        """φ in s, dφ/dt (1) and d²φ/dt² in 1/s."""
+
+    @abstractmethod
+    def time_of(self, phase: float) -> float:
+        """The time at which a phase, in s, is reached."""
+
+
+@dataclass(frozen=True)
+class EaseIn(Warp):
+    """Starts from rest: dφ/dt rises from 0 to 1 along a quintic step within `seconds`, so that φ has three continuous
+    derivatives. From then on the phase lags behind the time by half of `seconds`."""
+
+    seconds: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.seconds) and self.seconds >= 0.0):
+            raise ConfigError(f"the time to ease in must be 0 s or more, got {self.seconds}")
+
+    def at(self, time: float) -> tuple[float, float, float]:
+        if time >= self.seconds:
+            return time - 0.5 * self.seconds, 1.0, 0.0
+        if time <= 0.0:
+            return 0.0, 0.0, 0.0
+        u = time / self.seconds
+        phase = self.seconds * u**4 * (2.5 - u * (3.0 - u))
+        rate = u**3 * (10.0 - u * (15.0 - 6.0 * u))
+        return phase, rate, 30.0 * (u * (1.0 - u)) ** 2 / self.seconds
+
+    def time_of(self, phase: float) -> float:
+        if phase >= 0.5 * self.seconds:
+            return phase + 0.5 * self.seconds
+        low, high = 0.0, self.seconds
+        for _ in range(60):  # bisection: φ is monotone
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.at(middle)[0] < phase else (low, middle)
+        return high
+
+
+@dataclass(frozen=True)
+class Scale(Warp):
+    """Plays a trajectory faster (rate > 1) or slower."""
+
+    rate: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.rate) and self.rate > 0.0):
+            raise ConfigError(f"the rate of a time scaling must be above zero, got {self.rate}")
+
+    def at(self, time: float) -> tuple[float, float, float]:
+        return self.rate * time, self.rate, 0.0
+
+    def time_of(self, phase: float) -> float:
+        return phase / self.rate
