@@ -72,6 +72,7 @@ class MujocoPlant(Plant[World]):
         joints: friction, damping and compensation of the joints.
         sensors: force/torque sensors.
         pushes: disturbances.
+        observe: more frames whose true pose is to be known; those that touch, sense or are pushed are in any case.
 
     Raises:
         ConfigError: the period is not a multiple of the physics step, or the step is too long for a contact.
@@ -90,6 +91,7 @@ class MujocoPlant(Plant[World]):
         joints: JointEffects | None = None,
         sensors: Sequence[ForceSensor] = (),
         pushes: Sequence[Push] = (),
+        observe: Sequence[str] = (),
     ) -> None:
         self.robot = robot
         self.scene = scene or Scene()
@@ -99,10 +101,11 @@ class MujocoPlant(Plant[World]):
         self.sensors = tuple(sensors)
         self.pushes = tuple(pushes)
         self.start = robot.vector(robot.home if start is None else start, "start")
-        for frame in [*(s.frame for s in sensors), *(p.frame for p in pushes), *robot.contact_radius]:
+        frames = [*observe, *(s.frame for s in sensors), *(p.frame for p in pushes), *robot.contact_radius]
+        for frame in frames:
             robot.frame_id(frame)
         self.model = self._compile(physics_step)
-        self._sites = {name: self.model.site(name).id for name in self._observed_frames()}
+        self._sites = {name: self.model.site(name).id for name in dict.fromkeys(frames)}
         self._movable = {
             thing.name: self.model.body(thing.name).id
             for thing in self.scene.things
@@ -151,12 +154,6 @@ class MujocoPlant(Plant[World]):
         )
 
     # ------------------------------------------------------------------ inside
-
-    def _observed_frames(self) -> list[str]:
-        """Every frame whose true pose is worth recording, in a fixed order, once each."""
-        frames = [frame.name for frame in self.robot.model.frames if frame.type.name in ("OP_FRAME", "BODY")]
-        frames += [*self.robot.contact_radius, *(s.frame for s in self.sensors), *(p.frame for p in self.pushes)]
-        return [name for name in dict.fromkeys(frames) if name != "universe"]
 
     def _compile(self, physics_step: float) -> mujoco.MjModel:
         spec = spec_from_robot(self.robot)
