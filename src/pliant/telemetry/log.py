@@ -1,0 +1,184 @@
+"""Reads a log back as arrays."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from pliant.errors import ConfigError, OutputError, options
+from pliant.spatial import Array
+from pliant.telemetry.info import RunInfo
+from pliant.telemetry.mcap_read import Contents, read
+from pliant.telemetry.topics import FIELDS, PREFIX
+
+
+@dataclass(frozen=True, slots=True)
+class LogChannel:
+    """One channel of a log."""
+
+    name: str
+    unit: str
+    """SI; empty if it was not registered"""
+    shape: tuple[int, ...]
+    """of one sample"""
+    labels: tuple[str, ...]
+    """names of a vector's entries"""
+    count: int
+    """samples"""
+    rate: float
+    """Hz: samples per second between the first and the last; 0 for fewer than two"""
+    topic: str
+    """ROS 2 topic that carries it"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Stored:
+    """Samples of one channel as read: times (ns) and values, piece by piece."""
+
+    topic: str
+    unit: str
+    shape: tuple[int, ...]
+    labels: tuple[str, ...]
+    pieces: list[tuple[Array, Array]]
+
+
+class Log:
+    """The contents of one log, in memory.
+
+    `log["measurement/q"]` is an array (n, joints), `log.time("measurement/q")` its times in s.
+    """
+
+    def __init__(self, source: str, contents: Contents) -> None:
+        """Use `Log.open`."""
+        self.source = source
+        """where it came from"""
+        self.truncated = not contents.complete
+        """whether the file ends before its end: everything up to there is here"""
+        self.metadata: Mapping[str, Mapping[str, str]] = MappingProxyType(contents.metadata)
+        """name → metadata record of the file"""
+        self.info = RunInfo.from_metadata(contents.metadata["pliant"])
+        self._stored = _channels(contents)
+        self._phases = contents.texts(f"{PREFIX}/reference/phase")
+        self._arrays: dict[str, tuple[Array, Array]] = {}
+        self.channels: Mapping[str, LogChannel] = MappingProxyType(
+            {name: self._describe(name, stored) for name, stored in sorted(self._stored.items())}
+        )
+        """name → what it is"""
+
+    @staticmethod
+    def open(source: Path | str | BinaryIO) -> Log:
+        """Reads a log.
+
+        Args:
+            source: an MCAP file that pliant wrote, or a stream of one.
+
+        Raises:
+            OutputError: it cannot be read, is not MCAP, or was not written by pliant. A file that was cut off is read
+                up to the cut.
+        """
+        name = str(source) if isinstance(source, (str, Path)) else "the log's stream"
+        try:
+            data = Path(source).read_bytes() if isinstance(source, (str, Path)) else source.read()
+        except OSError as error:
+            raise OutputError(f"{name} cannot be read: {error.strerror}") from error
+        contents = read(name, data)
+        if "pliant" not in contents.metadata:
+            if not contents.complete:
+                raise OutputError(f"{name} is cut off or damaged before anything that pliant could read")
+            raise OutputError(f"{name} is an MCAP file, but not one of pliant's: it has no metadata record 'pliant'")
+        return Log(name, contents)
+
+    @property
+    def failure(self) -> str | None:
+        """Why the run ended early; None if it did not or if the log does not say."""
+        return self.metadata.get("pliant.outcome", {}).get("failure") or None
+
+    @property
+    def duration(self) -> float:
+        """s from the first sample to the last."""
+        spans = [self.time(name) for name in self._stored]
+        return max((float(t[-1]) for t in spans if t.size), default=0.0) - min(
+            (float(t[0]) for t in spans if t.size), default=0.0
+        )
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._stored
+
+    def __getitem__(self, name: str) -> Array:
+        """Values of a channel, (n, …).
+
+        Raises:
+            ConfigError: there is no such channel.
+        """
+        return self._array(name)[1]
+
+    def time(self, name: str = "measurement/q") -> Array:
+        """Times of a channel's samples, (n,) s since the start of the run.
+
+        Raises:
+            ConfigError: there is no such channel.
+        """
+        return self._array(name)[0]
+
+    def matching(self, suffix: str) -> list[str]:
+        """Names of the channels that end so."""
+        return [name for name in self.channels if name.endswith(suffix)]
+
+    def phases(self) -> list[tuple[float, str]]:
+        """Begin (s) and name of each phase of the reference."""
+        return list(self._phases)
+
+    def _array(self, name: str) -> tuple[Array, Array]:
+        if name not in self._stored:
+            raise ConfigError(f"{self.source} has no channel {name!r}; {options(self._stored, name)}")
+        if name not in self._arrays:
+            pieces = self._stored[name].pieces
+            time = np.concatenate([t for t, _ in pieces])
+            values = np.concatenate([x for _, x in pieces])
+            time.setflags(write=False)
+            values.setflags(write=False)
+            self._arrays[name] = time, values
+        return self._arrays[name]
+
+    def _describe(self, name: str, stored: _Stored) -> LogChannel:
+        time = self.time(name)
+        span = float(time[-1] - time[0]) if time.size > 1 else 0.0
+        rate = (time.size - 1) / span if span > 0.0 else 0.0
+        return LogChannel(name, stored.unit, stored.shape, stored.labels, int(time.size), rate, stored.topic)
+
+
+# ---------------------------------------------------------------------- from bytes to arrays
+
+
+def _channels(contents: Contents) -> dict[str, _Stored]:
+    found: dict[str, _Stored] = {}
+    for key in sorted(contents.channels):
+        channel = contents.channels[key]
+        fields = json.loads(channel.metadata.get(FIELDS, "{}"))
+        if not fields or not contents.times.get(key):
+            continue
+        time = np.array(contents.times[key], dtype=np.float64) * 1e-9
+        messages = np.frombuffer(b"".join(contents.data[key]), dtype=np.uint8).reshape(time.size, -1)
+        for name, about in fields.items():
+            values = _values(messages, about["offsets"]).reshape(time.size, *about["shape"])
+            shape = tuple(about["shape"])
+            if name in found and found[name].shape != shape:
+                name = f"{name}[{','.join(map(str, shape))}]"  # a channel whose shape changed on the way
+            stored = found.setdefault(name, _Stored(channel.topic, about["unit"], shape, tuple(about["labels"]), []))
+            stored.pieces.append((time, values))
+    return found
+
+
+def _values(messages: npt.NDArray[np.uint8], offsets: Sequence[int]) -> Array:
+    """(n, k) float64 from messages (n, bytes) and the bytes at which the numbers start."""
+    values = np.empty((messages.shape[0], len(offsets)))
+    for column, offset in enumerate(offsets):
+        values[:, column] = np.ascontiguousarray(messages[:, offset : offset + 8]).view("<f8")[:, 0]
+    return values

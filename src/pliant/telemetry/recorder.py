@@ -1,0 +1,243 @@
+"""Records a run: an observer that copies each tick into columns and writes them beside the loop."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import io
+import queue
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, Self
+
+import numpy as np
+
+from pliant.errors import ConfigError, OutputError, ShapeError
+from pliant.signals import Tick
+from pliant.telemetry.info import RunInfo
+from pliant.telemetry.log import Log
+from pliant.telemetry.mcap_file import McapFile
+from pliant.telemetry.plan import Block, Plan
+from pliant.telemetry.schema import Channel, signature
+from pliant.telemetry.timing import Timing
+from pliant.telemetry.topics import PREFIX, units_of
+
+_BLOCK = 512  # ticks per block: what a killed process loses at most, and one chunk of the file
+_WAITING = 4  # full blocks in memory before the loop waits for the file
+
+
+class Recorder:
+    """An observer that writes every tick to an MCAP file. Use it in a `with` block, or call `close`.
+
+    In the loop it only copies numbers into preallocated rows; a thread beside it writes full blocks. Whatever ends the
+    run, `close` leaves a readable file with all ticks; a killed process leaves one that is readable up to its last
+    full block. The bytes of the file depend on the ticks alone. Wall times go to `NAME.timing.json` beside it.
+    """
+
+    def __init__(
+        self,
+        target: Path | str | BinaryIO | None,
+        info: RunInfo | None = None,
+        *,
+        channels: Sequence[Channel] = (),
+        decimation: int = 1,
+    ) -> None:
+        """Opens the file.
+
+        Args:
+            target: file to write, a stream, or None to keep the log in memory (`log()` reads it).
+            info: what the log says about the run.
+            channels: units of diagnostics; a name may be a pattern, the first that fits counts.
+            decimation: records every so many ticks, beginning with the first.
+
+        Raises:
+            OutputError: the file cannot be opened.
+            ConfigError: decimation is below 1, or the configuration in `info` is not plain data.
+        """
+        if decimation < 1:
+            raise ConfigError(f"decimation must be 1 (every tick) or more, got {decimation}")
+        self.info = info or RunInfo()
+        metadata = {**self.info.as_metadata(), "decimation": str(decimation)}
+        self.path = Path(target) if isinstance(target, (str, Path)) else None
+        self._stream, self._owned = _open(target)
+        self._channels, self._decimation = tuple(channels), decimation
+        self._plans: dict[tuple[Any, ...], Plan] = {}
+        self._signature: tuple[Any, ...] | None = None
+        self._block: Block | None = None
+        self._seen = 0
+        self.timing = Timing()
+        self._units: dict[str, str] = {}
+        self._file = McapFile(self._stream)
+        self._file.add_metadata("pliant", metadata)
+        self._phase = ""
+        self._error: BaseException | None = None
+        self._closed = False
+        self._queue: queue.Queue[Block | None] = queue.Queue(maxsize=_WAITING)
+        self._thread = threading.Thread(target=self._work, name="pliant-recorder", daemon=True)
+        self._thread.start()
+        atexit.register(self.close)
+
+    def __call__(self, tick: Tick) -> None:
+        """Records one tick.
+
+        Raises:
+            OutputError: the file could not be written (the disk is full, say).
+            ConfigError: two channels have the same name.
+            ShapeError: a diagnostic is neither a number nor an array.
+        """
+        seen = self._seen
+        self._seen = seen + 1
+        if tick.wall:
+            self.timing.add(tick.wall)
+        if seen % self._decimation:
+            return
+        if self._error is not None:
+            raise self._failure(self._error)
+        block = self._room(tick)
+        try:
+            block.plan.fill(tick, block)
+        except (ValueError, TypeError):
+            block = self._replanned(tick)
+        block.times[block.count] = tick.measurement.time
+        block.count += 1
+
+    def log(self) -> Log:
+        """Closes the recorder and reads what it wrote.
+
+        Raises:
+            OutputError: the file cannot be read, or the target was a stream of the caller.
+        """
+        self.close()
+        if self.path is not None:
+            return Log.open(self.path)
+        if not isinstance(self._stream, io.BytesIO):
+            raise OutputError(
+                "a log that went into a stream cannot be read back by its recorder; open it with Log.open"
+            )
+        return Log.open(io.BytesIO(self._stream.getvalue()))
+
+    def close(self, failure: str | None = None) -> None:
+        """Writes what is still in memory and finishes the file. A second call does nothing.
+
+        Args:
+            failure: why the run ended early, for the log.
+
+        Raises:
+            OutputError: the file could not be written.
+        """
+        if self._closed:
+            return
+        self._closed = True
+        atexit.unregister(self.close)
+        self._send()
+        self._queue.put(None)
+        self._thread.join()
+        try:
+            if self._error is None:
+                self._finish(failure)
+        except OSError as error:
+            self._error = error
+        finally:
+            if self._owned:
+                with contextlib.suppress(OSError):
+                    self._stream.close()
+        if self._error is not None:
+            raise self._failure(self._error)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        failure = None
+        if kind is not None:
+            failure = "interrupted" if issubclass(kind, KeyboardInterrupt) else f"{kind.__name__}: {error}"
+        try:
+            self.close(failure)
+        except OutputError:
+            if kind is None:
+                raise  # the error that ended the run is worth more than this one
+
+    # ------------------------------------------------------------------ in the loop
+
+    def _room(self, tick: Tick) -> Block:
+        """A block with a free row that fits the tick."""
+        found, phase, block = signature(tick), tick.reference.phase, self._block
+        if block is not None and found == self._signature and phase == block.phase and block.count < len(block.times):
+            return block
+        plan = self._plans.get(found)
+        if plan is None:
+            plan = self._plans[found] = self._plan(tick)
+        self._signature = found
+        return self._new_block(plan, phase)
+
+    def _replanned(self, tick: Tick) -> Block:
+        """A block for a tick in which a diagnostic has another shape than before, with its row filled."""
+        assert self._signature is not None
+        plan = self._plans[self._signature] = self._plan(tick)
+        block = self._new_block(plan, tick.reference.phase)
+        try:
+            plan.fill(tick, block)
+        except (ValueError, TypeError) as error:
+            raise ShapeError(f"a tick cannot be recorded: {error}") from error
+        return block
+
+    def _new_block(self, plan: Plan, phase: str) -> Block:
+        self._send()
+        self._block = Block(plan, phase, _BLOCK)
+        return self._block
+
+    def _send(self) -> None:
+        if self._block is not None and self._block.count and self._error is None:
+            self._queue.put(self._block)
+        self._block = None
+
+    def _plan(self, tick: Tick) -> Plan:
+        plan = Plan.of(tick, self.info, self._channels)
+        self._units.update(units_of(plan.topics))
+        return plan
+
+    # ------------------------------------------------------------------ beside the loop
+
+    def _work(self) -> None:
+        while (block := self._queue.get()) is not None:
+            if self._error is None:
+                try:
+                    self._write(block)
+                except BaseException as error:
+                    self._error = error
+
+    def _write(self, block: Block) -> None:
+        times = np.rint(block.times[: block.count] * 1e9).astype(np.int64)
+        if block.phase != self._phase:
+            self._phase = block.phase
+            self._file.add_text(f"{PREFIX}/reference/phase", int(times[0]), block.phase)
+        self._file.add_block(block.plan.topics, times, block.columns())
+
+    def _finish(self, failure: str | None) -> None:
+        self._file.add_metadata("pliant.units", dict(sorted(self._units.items())))
+        self._file.add_metadata("pliant.outcome", {"ticks": str(self._seen), "failure": failure or ""})
+        self._file.finish()
+        if self.path is not None:
+            self.timing.write(self.path.with_suffix(".timing.json"))
+
+    def _failure(self, error: BaseException) -> OutputError:
+        where = self.path or "the log's stream"
+        why = (error.strerror or str(error)) if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
+        failure = OutputError(f"{where} cannot be written: {why}")
+        failure.__cause__ = error
+        return failure
+
+
+def _open(target: Path | str | BinaryIO | None) -> tuple[BinaryIO, bool]:
+    if target is None:
+        return io.BytesIO(), False
+    if not isinstance(target, (str, Path)):
+        return target, False
+    try:
+        return Path(target).open("wb"), True
+    except OSError as error:
+        raise OutputError(f"the log {target} cannot be created: {error.strerror}") from error

@@ -1,0 +1,198 @@
+"""The file `summary.json`: the metrics of every case of a study beside the paper's numbers and the targets."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pliant
+from pliant.errors import OutputError
+from pliant.telemetry.output import write_text
+
+FILE = "summary.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """One number that a run or a set of runs is judged by."""
+
+    name: str
+    value: float
+    """NaN where no run gave one"""
+    unit: str
+    paper: float | None = None
+    """the number that the paper prints"""
+    target: float | None = None
+    """the bound that the value should keep"""
+    at_least: bool = False
+    """whether the target is a lower bound; else an upper one"""
+    std: float | None = None
+    """standard deviation over runs"""
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the target is kept; None without a target. A value that is not finite keeps none."""
+        if self.target is None:
+            return None
+        return self.value >= self.target if self.at_least else self.value <= self.target
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """The result of one case with one controller."""
+
+    case: str
+    controller: str
+    metrics: tuple[Metric, ...] = ()
+    runs: int = 1
+    """runs that were started"""
+    failures: tuple[str, ...] = ()
+    """one sentence per run that did not reach its end; such runs count"""
+    seeds: tuple[int, ...] = ()
+    note: str = ""
+    """choices that the reader should know"""
+
+    def metric(self, name: str) -> Metric:
+        """The metric of that name. Raises KeyError if there is none."""
+        for metric in self.metrics:
+            if metric.name == name:
+                return metric
+        raise KeyError(name)
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """The results of a study."""
+
+    study: str
+    seed: int | None
+    cases: tuple[Case, ...] = ()
+    version: str = field(default=pliant.__version__)
+
+    def write(self, folder: Path) -> Path:
+        """Writes `summary.json` into a folder.
+
+        Returns:
+            The file.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        path = folder / FILE
+        content = {
+            "study": self.study,
+            "version": self.version,
+            "seed": self.seed,
+            "cases": [_case_to_json(case) for case in self.cases],
+        }
+        write_text(path, json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+        return path
+
+    @staticmethod
+    def read(path: Path) -> Summary:
+        """Reads a `summary.json`, or the one in a folder.
+
+        Raises:
+            OutputError: it cannot be read or is not a summary.
+        """
+        path = path / FILE if path.is_dir() else path
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+            cases = tuple(_case_from_json(entry) for entry in content["cases"])
+            return Summary(content["study"], content["seed"], cases, content["version"])
+        except OSError as error:
+            raise OutputError(f"{path} cannot be read: {error.strerror}") from error
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise OutputError(f"{path} is not a summary of a pliant study ({type(error).__name__}: {error})") from error
+
+
+def over_runs(runs: Sequence[Sequence[Metric]]) -> tuple[Metric, ...]:
+    """Mean and standard deviation of each metric over runs.
+
+    Args:
+        runs: the metrics of each run that reached its end. A metric that some runs lack is averaged over the others;
+            one that is not finite makes the mean so, so that no failure hides.
+
+    Returns:
+        One metric per name, in the order of first appearance.
+    """
+    values: dict[str, list[Metric]] = {}
+    for run in runs:
+        for metric in run:
+            values.setdefault(metric.name, []).append(metric)
+    return tuple(_averaged(found) for found in values.values())
+
+
+def _averaged(found: Sequence[Metric]) -> Metric:
+    numbers = [metric.value for metric in found]
+    mean = math.fsum(numbers) / len(numbers) if all(map(math.isfinite, numbers)) else math.nan
+    variance = math.fsum((number - mean) ** 2 for number in numbers) / len(numbers)
+    first = found[0]
+    return Metric(
+        first.name,
+        mean,
+        first.unit,
+        first.paper,
+        first.target,
+        first.at_least,
+        math.sqrt(variance) if len(found) > 1 else None,
+    )
+
+
+def _case_to_json(case: Case) -> dict[str, Any]:
+    content: dict[str, Any] = {
+        "case": case.case,
+        "controller": case.controller,
+        "metrics": {metric.name: _metric_to_json(metric) for metric in case.metrics},
+        "runs": case.runs,
+        "failed": len(case.failures),
+        "failure": list(case.failures),
+        "seeds": list(case.seeds),
+    }
+    if case.note:
+        content["note"] = case.note
+    return content
+
+
+def _metric_to_json(metric: Metric) -> dict[str, Any]:
+    content: dict[str, Any] = {"value": _number(metric.value), "unit": metric.unit, "paper": metric.paper}
+    if metric.target is not None:
+        content |= {"target": metric.target, "met": metric.met}
+    if metric.at_least:
+        content["at_least"] = True
+    if metric.std is not None:
+        content["std"] = _number(metric.std)
+    return content
+
+
+def _number(value: float) -> float | None:
+    """JSON has no NaN and no infinity: both become null."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _case_from_json(content: dict[str, Any]) -> Case:
+    metrics = tuple(
+        Metric(
+            name=name,
+            value=math.nan if about["value"] is None else float(about["value"]),
+            unit=about["unit"],
+            paper=about["paper"],
+            target=about.get("target"),
+            at_least=about.get("at_least", False),
+            std=about.get("std"),
+        )
+        for name, about in content["metrics"].items()
+    )
+    return Case(
+        case=content["case"],
+        controller=content["controller"],
+        metrics=metrics,
+        runs=content.get("runs", 1),
+        failures=tuple(content.get("failure", ())),
+        seeds=tuple(content.get("seeds", ())),
+        note=content.get("note", ""),
+    )

@@ -1,0 +1,59 @@
+"""Wall times of the stages of the loop. They differ from run to run, so they stay out of the log."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from pliant.spatial import Array
+from pliant.telemetry.output import write_text
+
+_KEPT = 100_000  # latest periods whose times are kept for the percentiles
+
+
+class Timing:
+    """Collects seconds per stage, in bounded memory."""
+
+    def __init__(self) -> None:
+        self._names: tuple[str, ...] = ()
+        self._times: Array = np.empty((0, _KEPT))
+        self._count = 0
+
+    def add(self, wall: Mapping[str, float]) -> None:
+        """Takes the times of one period: stage → s. Stages that the first period lacks are left out."""
+        if not self._count:
+            self._names = tuple(wall)
+            self._times = np.full((len(wall), _KEPT), np.nan)
+        column = self._count % _KEPT
+        for row, name in enumerate(self._names):
+            self._times[row, column] = wall.get(name, np.nan)
+        self._count += 1
+
+    def summary(self) -> dict[str, dict[str, float]]:
+        """Stage → mean, median, 90th and 99th percentile, maximum in µs, over the latest 100 000 periods, and their
+        number."""
+        found: dict[str, dict[str, float]] = {}
+        for name, row in zip(self._names, self._times[:, : min(self._count, _KEPT)], strict=True):
+            times = row[np.isfinite(row)] * 1e6
+            if times.size:
+                p50, p90, p99 = (float(value) for value in np.percentile(times, (50, 90, 99)))
+                found[name] = {
+                    "count": int(times.size),
+                    "mean_us": float(times.mean()),
+                    "p50_us": p50,
+                    "p90_us": p90,
+                    "p99_us": p99,
+                    "max_us": float(times.max()),
+                }
+        return found
+
+    def write(self, path: Path) -> None:
+        """Writes the summary as JSON.
+
+        Raises:
+            OutputError: the file cannot be written.
+        """
+        write_text(path, json.dumps(self.summary(), indent=2) + "\n")
