@@ -1,0 +1,119 @@
+// Python face of the contact law: pliant._contact.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/tuple.h>
+
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+#include "world.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace pliant::contact;
+
+namespace {
+
+using Doubles = nb::ndarray<double, nb::c_contig, nb::device::cpu>;
+using Constants = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Integers = nb::ndarray<const int32_t, nb::c_contig, nb::device::cpu>;
+
+void require_size(size_t got, size_t wanted, const char* name) {
+  if (got != wanted)
+    throw std::invalid_argument(std::string(name) + " must have " + std::to_string(wanted) + " entries, got " +
+                                std::to_string(got));
+}
+
+uintptr_t address(const nb::object& owner) { return nb::cast<uintptr_t>(owner.attr("_address")); }
+
+template <class Array>
+auto array(const nb::object& owner, const char* name) {
+  return nb::cast<Array>(owner.attr(name)).data();
+}
+
+// The contacts of one MuJoCo model and one data. Keeps the Python objects alive that own the memory it looks at.
+class ContactLoop {
+ public:
+  ContactLoop(nb::object model, nb::object data, uintptr_t step1, uintptr_t step2)
+      : model_(std::move(model)), data_(std::move(data)) {
+    step1_ = reinterpret_cast<HalfStep>(step1);
+    step2_ = reinterpret_cast<HalfStep>(step2);
+    model_address_ = reinterpret_cast<const void*>(address(model_));
+    data_address_ = reinterpret_cast<void*>(address(data_));
+    views_.geom_type = array<Integers>(model_, "geom_type");
+    views_.geom_body = array<Integers>(model_, "geom_bodyid");
+    views_.geom_size = array<Constants>(model_, "geom_size");
+    views_.body_root = array<Integers>(model_, "body_rootid");
+    views_.geom_position = array<Constants>(data_, "geom_xpos");
+    views_.geom_rotation = array<Constants>(data_, "geom_xmat");
+    views_.body_com = array<Constants>(data_, "xipos");
+    views_.subtree_com = array<Constants>(data_, "subtree_com");
+    views_.body_velocity = array<Constants>(data_, "cvel");
+    views_.body_force = array<Doubles>(data_, "xfrc_applied");
+    views_.joint_velocity = array<Constants>(data_, "qvel");
+    views_.ngeom = nb::cast<int>(model_.attr("ngeom"));
+    views_.nbody = nb::cast<int>(model_.attr("nbody"));
+    views_.nv = nb::cast<int>(model_.attr("nv"));
+  }
+
+  std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material) {
+    if (geom_a < 0 || geom_b < 0 || geom_a >= views_.ngeom || geom_b >= views_.ngeom)
+      throw std::invalid_argument("a contact pair names a geom that the model does not have");
+    require_size(material.size(), 8, "material");
+    const double* m = material.data();
+    const int first = world_.add_pair(views_, geom_a, geom_b, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]});
+    if (first < 0) throw std::invalid_argument("no contact law for this pair of shapes in this order");
+    return {first, world_.slots() - first};
+  }
+
+  int slots() const { return world_.slots(); }
+
+  bool evaluate(double dt, const Constants& push, const Doubles& bristles, const Doubles& force, const Doubles& point,
+                const Doubles& penetration) const {
+    check(push, bristles, force, point, penetration);
+    return world_.evaluate(views_, dt, push.data(), bristles.data(), {force.data(), point.data(), penetration.data()});
+  }
+
+  int advance(int count, double dt, const Constants& push, const Doubles& bristles, const Doubles& force, const Doubles& point,
+              const Doubles& penetration) const {
+    check(push, bristles, force, point, penetration);
+    const Output out{force.data(), point.data(), penetration.data()};
+    const double* push_data = push.data();
+    double* bristle_data = bristles.data();
+    nb::gil_scoped_release release;
+    return world_.advance(views_, step1_, step2_, model_address_, data_address_, count, dt, push_data, bristle_data, out);
+  }
+
+ private:
+  void check(const Constants& push, const Doubles& bristles, const Doubles& force, const Doubles& point,
+             const Doubles& penetration) const {
+    const size_t slots = static_cast<size_t>(world_.slots());
+    require_size(push.size(), 6 * static_cast<size_t>(views_.nbody), "push");
+    require_size(bristles.size(), kBristleSize * slots, "bristles");
+    require_size(force.size(), 3 * slots, "force");
+    require_size(point.size(), 3 * slots, "point");
+    require_size(penetration.size(), slots, "penetration");
+  }
+
+  nb::object model_, data_;
+  Views views_{};
+  World world_;
+  HalfStep step1_, step2_;
+  const void* model_address_;
+  void* data_address_;
+};
+
+}  // namespace
+
+NB_MODULE(_contact, m) {
+  m.attr("BRISTLE_SIZE") = kBristleSize;
+  nb::class_<ContactLoop>(m, "ContactLoop")
+      .def(nb::init<nb::object, nb::object, uintptr_t, uintptr_t>(), "model"_a, "data"_a, "step1"_a, "step2"_a)
+      .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a)
+      .def_prop_ro("slots", &ContactLoop::slots)
+      .def("evaluate", &ContactLoop::evaluate, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
+           "point"_a.noconvert(), "penetration"_a.noconvert())
+      .def("advance", &ContactLoop::advance, "count"_a, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
+           "point"_a.noconvert(), "penetration"_a.noconvert());
+}

@@ -1,0 +1,139 @@
+#include "shapes.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace pliant::contact {
+namespace {
+
+constexpr int kCorners = 8;
+constexpr double kTiny = 1e-12;
+
+struct Ball {  // what A presents to B: a centre and a radius (zero for a box corner)
+  Vec3 centre;
+  double radius;
+};
+
+Touch against_plane(const Ball& ball, const Shape& plane) {
+  const Vec3 normal = plane.rotation.column(2);
+  const double gap = dot(normal, ball.centre - plane.position) - ball.radius;
+  return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
+}
+
+Touch against_sphere(const Ball& ball, const Shape& sphere) {
+  const Vec3 apart = ball.centre - sphere.position;
+  const double distance = norm(apart);
+  const Vec3 normal = distance > kTiny ? (1.0 / distance) * apart : Vec3{0.0, 0.0, 1.0};
+  const double gap = distance - ball.radius - sphere.size.x;
+  return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
+}
+
+// A centre inside the box leaves through the nearest face.
+Touch inside_box(const Ball& ball, const Shape& box, const Vec3& local) {
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (box.size[i] - std::abs(local[i]) < box.size[axis] - std::abs(local[axis])) axis = i;
+  const double side = local[axis] < 0.0 ? -1.0 : 1.0;
+  const Vec3 normal = side * box.rotation.column(axis);
+  const double gap = std::abs(local[axis]) - box.size[axis] - ball.radius;
+  return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
+}
+
+Touch against_box(const Ball& ball, const Shape& box) {
+  const Vec3 local = box.rotation.to_local(ball.centre - box.position);
+  Vec3 excess;
+  for (int i = 0; i < 3; ++i) excess[i] = local[i] - std::clamp(local[i], -box.size[i], box.size[i]);
+  const double distance = norm(excess);
+  if (distance < kTiny) return inside_box(ball, box, local);
+  const Vec3 normal = box.rotation.to_world((1.0 / distance) * excess);
+  const double gap = distance - ball.radius;
+  return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
+}
+
+// Half the derivative of the squared distance between a + t d and a box centred at the origin; grows with t.
+double distance_slope(const Vec3& a, const Vec3& d, const Vec3& half, double t) {
+  double slope = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double x = a[i] + t * d[i];
+    slope += d[i] * (x - std::clamp(x, -half[i], half[i]));
+  }
+  return slope;
+}
+
+// Where a piecewise linear, growing slope first reaches `level` on [t0, 1], between the breakpoints given in order.
+double first_reach(const Vec3& a, const Vec3& d, const Vec3& half, const double* t, int count, double level) {
+  double before = distance_slope(a, d, half, t[0]);
+  if (before >= level) return t[0];
+  for (int k = 1; k < count; ++k) {
+    const double after = distance_slope(a, d, half, t[k]);
+    if (after >= level) return t[k - 1] + (t[k] - t[k - 1]) * (level - before) / (after - before);
+    before = after;
+  }
+  return t[count - 1];
+}
+
+// Parameter in [0, 1] of the point of a segment nearest to a box, both in the box's axes; the middle one if there are many.
+double nearest_on_segment(const Vec3& a, const Vec3& d, const Vec3& half) {
+  std::array<double, 8> t{0.0, 1.0};
+  int count = 2;
+  for (int i = 0; i < 3; ++i)
+    for (const double face : {-half[i], half[i]}) {
+      const double crossing = std::abs(d[i]) > kTiny ? (face - a[i]) / d[i] : -1.0;
+      if (crossing > 0.0 && crossing < 1.0) t[count++] = crossing;
+    }
+  std::sort(t.begin(), t.begin() + count);
+  const double level = 1e-9 * dot(d, d);  // below it the segment counts as parallel to the face
+  const double low = first_reach(a, d, half, t.data(), count, -level);
+  const double high = first_reach(a, d, half, t.data(), count, level);
+  return 0.5 * (low + high);
+}
+
+Ball ball_of_sphere(const Shape& a) { return {a.position, a.size.x}; }
+
+Ball ball_of_corner(const Shape& a, int corner) {
+  const Vec3 local{(corner & 1 ? 1.0 : -1.0) * a.size.x, (corner & 2 ? 1.0 : -1.0) * a.size.y,
+                   (corner & 4 ? 1.0 : -1.0) * a.size.z};
+  return {a.position + a.rotation.to_world(local), 0.0};
+}
+
+// The point of a capsule's axis that matters for B, with the capsule's radius.
+Ball ball_of_capsule(const Shape& a, const Shape& b, int slot) {
+  const Vec3 half_axis = a.size.y * a.rotation.column(2);
+  if (b.type == ShapeType::kPlane) return {slot == 0 ? a.position - half_axis : a.position + half_axis, a.size.x};
+  const Vec3 start = a.position - half_axis;
+  const Vec3 along = 2.0 * half_axis;
+  double t = 0.0;
+  if (b.type == ShapeType::kBox) {
+    t = nearest_on_segment(b.rotation.to_local(start - b.position), b.rotation.to_local(along), b.size);
+  } else if (const double length2 = dot(along, along); length2 > 0.0) {
+    t = std::clamp(dot(b.position - start, along) / length2, 0.0, 1.0);
+  }
+  return {start + t * along, a.size.x};
+}
+
+}  // namespace
+
+int slot_count(ShapeType a, ShapeType b) {
+  const bool b_known = b == ShapeType::kPlane || b == ShapeType::kSphere || b == ShapeType::kBox;
+  if (!b_known) return 0;
+  if (a == ShapeType::kSphere) return 1;
+  if (a == ShapeType::kCapsule) return b == ShapeType::kPlane ? 2 : 1;
+  if (a == ShapeType::kBox) return b == ShapeType::kSphere ? 0 : kCorners;
+  return 0;
+}
+
+Touch touch(const Shape& a, const Shape& b, int slot) {
+  Ball ball{};
+  switch (a.type) {
+    case ShapeType::kBox: ball = ball_of_corner(a, slot); break;
+    case ShapeType::kCapsule: ball = ball_of_capsule(a, b, slot); break;
+    default: ball = ball_of_sphere(a); break;
+  }
+  switch (b.type) {
+    case ShapeType::kPlane: return against_plane(ball, b);
+    case ShapeType::kSphere: return against_sphere(ball, b);
+    default: return against_box(ball, b);
+  }
+}
+
+}  // namespace pliant::contact

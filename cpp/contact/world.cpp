@@ -1,0 +1,85 @@
+#include "world.hpp"
+
+#include <cstring>
+
+namespace pliant::contact {
+namespace {
+
+constexpr double kFastest = 1e5;  // m/s or rad/s; anything above is a simulation that has blown up
+
+Shape shape_of(const Views& v, int geom) {
+  return {static_cast<ShapeType>(v.geom_type[geom]), load(v.geom_size + 3 * geom), load(v.geom_position + 3 * geom),
+          Rotation{v.geom_rotation + 9 * geom}};
+}
+
+Vec3 point_velocity(const Views& v, int body, const Vec3& point) {
+  const double* twist = v.body_velocity + 6 * body;
+  const Vec3 reference = load(v.subtree_com + 3 * v.body_root[body]);
+  return load(twist + 3) + cross(load(twist), point - reference);
+}
+
+void add_force(const Views& v, int body, const Vec3& point, const Vec3& force) {
+  double* row = v.body_force + 6 * body;
+  const Vec3 torque = cross(point - load(v.body_com + 3 * body), force);
+  store(load(row) + force, row);
+  store(load(row + 3) + torque, row + 3);
+}
+
+bool velocities_sound(const Views& v) {
+  for (int i = 0; i < v.nv; ++i)
+    if (!(std::abs(v.joint_velocity[i]) < kFastest)) return false;
+  return true;
+}
+
+}  // namespace
+
+int World::add_pair(const Views& views, int geom_a, int geom_b, const Material& material) {
+  const int slots = slot_count(static_cast<ShapeType>(views.geom_type[geom_a]), static_cast<ShapeType>(views.geom_type[geom_b]));
+  if (slots == 0) return -1;
+  const int first = slots_;
+  pairs_.push_back({geom_a, geom_b, material, first, slots});
+  slots_ += slots;
+  return first;
+}
+
+bool World::evaluate(const Views& v, double dt, const double* push, double* bristles, const Output& out) const {
+  std::memcpy(v.body_force, push, sizeof(double) * 6 * static_cast<size_t>(v.nbody));
+  bool sound = true;
+  for (const Pair& pair : pairs_) {
+    const Shape a = shape_of(v, pair.geom_a), b = shape_of(v, pair.geom_b);
+    const int body_a = v.geom_body[pair.geom_a], body_b = v.geom_body[pair.geom_b];
+    for (int i = 0; i < pair.slots; ++i) {
+      const int slot = pair.first_slot + i;
+      Bristle& bristle = *reinterpret_cast<Bristle*>(bristles + kBristleSize * slot);
+      const Touch t = touch(a, b, i);
+      Vec3 force{};
+      if (t.penetration > 0.0) {
+        const Vec3 velocity = point_velocity(v, body_a, t.point) - point_velocity(v, body_b, t.point);
+        const double pressing = normal_force(pair.material, t.penetration, -dot(t.normal, velocity));
+        force = pressing * t.normal + friction_force(pair.material, t.normal, pressing, velocity, dt, bristle);
+        add_force(v, body_a, t.point, force);
+        add_force(v, body_b, t.point, -force);
+      } else {
+        reset(bristle, pair.material);
+      }
+      sound = sound && finite(force) && std::isfinite(t.penetration);
+      store(force, out.force + 3 * slot);
+      store(t.point, out.point + 3 * slot);
+      out.penetration[slot] = t.penetration;
+    }
+  }
+  return sound;
+}
+
+int World::advance(const Views& views, HalfStep step1, HalfStep step2, const void* model, void* data, int count, double dt,
+                   const double* push, double* bristles, const Output& out) const {
+  for (int done = 0; done < count; ++done) {
+    step1(model, data);
+    if (!evaluate(views, dt, push, bristles, out)) return done;
+    step2(model, data);
+    if (!velocities_sound(views)) return done;
+  }
+  return count;
+}
+
+}  // namespace pliant::contact

@@ -1,0 +1,63 @@
+// All contacts of a scene, and the loop that alternates them with a physics engine's half steps.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "law.hpp"
+#include "shapes.hpp"
+
+namespace pliant::contact {
+
+struct Pair {
+  int geom_a, geom_b;
+  Material material;
+  int first_slot, slots;
+};
+
+// Views of a MuJoCo model and its data. Nothing here owns memory.
+struct Views {
+  const int32_t* geom_type;      // (ngeom,)
+  const int32_t* geom_body;      // (ngeom,)
+  const double* geom_size;       // (ngeom, 3)
+  const double* geom_position;   // (ngeom, 3)
+  const double* geom_rotation;   // (ngeom, 9)
+  const int32_t* body_root;      // (nbody,)
+  const double* body_com;        // (nbody, 3) where xfrc_applied acts
+  const double* subtree_com;     // (nbody, 3) where cvel is expressed
+  const double* body_velocity;   // (nbody, 6) cvel: angular first
+  double* body_force;            // (nbody, 6) xfrc_applied: force, then torque
+  const double* joint_velocity;  // (nv,)
+  int ngeom, nbody, nv;
+};
+
+// Where the forces of one evaluation go, one row per contact point.
+struct Output {
+  double* force;        // (slots, 3) N on body A, world axes
+  double* point;        // (slots, 3) m, world
+  double* penetration;  // (slots,) m
+};
+
+using HalfStep = void (*)(const void* model, void* data);
+
+class World {
+ public:
+  // Returns the first slot of the pair, or -1 if the shapes are not supported in this order.
+  int add_pair(const Views& views, int geom_a, int geom_b, const Material& material);
+  int slots() const { return slots_; }
+  const std::vector<Pair>& pairs() const { return pairs_; }
+
+  // One evaluation: writes push plus contact forces to body_force. With dt = 0 the bristles keep their state.
+  // Returns false if a force is not finite.
+  bool evaluate(const Views& views, double dt, const double* push, double* bristles, const Output& out) const;
+
+  // `count` steps of dt. Returns how many were completed: fewer than `count` if a force or a velocity is not finite.
+  int advance(const Views& views, HalfStep step1, HalfStep step2, const void* model, void* data, int count, double dt,
+              const double* push, double* bristles, const Output& out) const;
+
+ private:
+  std::vector<Pair> pairs_;
+  int slots_ = 0;
+};
+
+}  // namespace pliant::contact
