@@ -2,6 +2,8 @@
 
 from pliant.simulation.disturbances import Push, random_pushes
 from pliant.simulation.force_sensor import ForceSensor
+from pliant.simulation.imperfect import ImperfectPlant, ImperfectWorld
+from pliant.simulation.imperfections import Imperfections
 from pliant.simulation.plant import JointEffects, MujocoPlant, World
 from pliant.simulation.scene import Ball, Box, Plane, Scene, Surface, floor, table, wall
 
@@ -9,6 +11,9 @@ __all__ = [
     "Ball",
     "Box",
     "ForceSensor",
+    "ImperfectPlant",
+    "ImperfectWorld",
+    "Imperfections",
     "JointEffects",
     "MujocoPlant",
     "Plane",
