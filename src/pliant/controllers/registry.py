@@ -1,0 +1,66 @@
+"""The controllers of this package by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pliant.controllers.advice import advise, sentences, smallest_inertia
+from pliant.controllers.attractor import Law
+from pliant.controllers.config import OperationalSpaceConfig, StackConfig
+from pliant.controllers.operational_space import OperationalSpace
+from pliant.controllers.presets import STIFF_STACK
+from pliant.controllers.stack import Stack
+from pliant.entries import ControllerEntry
+from pliant.robot import Robot
+
+
+def build_stack(robot: Robot, config: StackConfig, period: float) -> Stack:
+    """A stack from its configuration, for a control period in s."""
+    return Stack(
+        robot,
+        config.frame_tasks(),
+        period,
+        law=config.law,
+        phases=config.phases.settings(),
+        gravity_compensation=config.gravity_compensation,
+    )
+
+
+def build_operational_space(robot: Robot, config: OperationalSpaceConfig, period: float) -> OperationalSpace:
+    """An operational-space controller from its configuration; its law knows no period."""
+    return OperationalSpace(robot, **config.model_dump())
+
+
+def advise_stack(robot: Robot, config: StackConfig, period: float) -> tuple[str, ...]:
+    """What is unsafe about a stack on a robot at its home, sampled at a period in s."""
+    found: list[str] = []
+    for task in config.frame_tasks():
+        inertia = smallest_inertia(robot, task.frame)[: task.axes]
+        advices = sentences(advise(task.tuning, period, inertia, shape=task.shape))
+        found += [f"task {task.label!r}, {text}" for text in advices]
+    return tuple(found)
+
+
+def _stack(name: str, law: Law, summary: str) -> ControllerEntry[StackConfig]:
+    default = STIFF_STACK.model_copy(update={"law": law})
+    return ControllerEntry(name, summary, default, build_stack, advise_stack)
+
+
+CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
+    entry.name: entry
+    for entry in (
+        _stack("stack", Law.CAPPED, "stack of fractal impedances with the capped, passive convergence law"),
+        _stack("stack-paper", Law.STACK_PRINTED, "the same with the law of Tiseo et al. 2020, Algorithm 1, as printed"),
+        _stack("stack-corrected", Law.STACK_CORRECTED, "the same with that law's sign turned round"),
+        _stack("stack-hapfic", Law.HAPFIC, "the same with the law of Tiseo et al. 2021, eq. 1, as printed"),
+        _stack("spring", Law.SPRING, "the same force profiles as plain springs, without an attractor and undamped"),
+        ControllerEntry(
+            "operational-space",
+            "Khatib's operational-space controller with a dynamically consistent posture",
+            OperationalSpaceConfig(),
+            build_operational_space,
+        ),
+    )
+}
+"""name → entry"""
