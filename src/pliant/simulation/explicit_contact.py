@@ -1,0 +1,249 @@
+"""Stiff contacts with stiction, computed as forces between the physics engine's two half steps.
+
+`F_n = max(0, s(p/w)(K p + D ṗ))` with s a smoothstep over the transition w, and a bristle that sticks below the static friction
+limit ([HapFIC] sec. III). The law itself and its loop are compiled (cpp/contact).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from pliant._contact import BRISTLE_SIZE, ContactLoop
+from pliant.errors import ConfigError, RunFailedError
+from pliant.simulation.scene import Surface
+from pliant.spatial import Array
+
+_TRANSITION = 1e-3  # m, [HapFIC] sec. III
+_CRITICAL_VELOCITY = 1e-3  # m/s, same place
+
+
+@dataclass(frozen=True)
+class ContactMaterial:
+    """Numbers of one contact, in the order of the compiled law."""
+
+    stiffness: float
+    """K, N/m, of every contact point"""
+    damping: float
+    """D, N s/m"""
+    transition: float
+    """w, m of penetration over which the force fades in"""
+    mu_static: float
+    mu_dynamic: float
+    critical_velocity: float
+    """v_c, m/s of sliding around which friction falls from static to dynamic"""
+    tangential_stiffness: float
+    """N/m of the bristle; 0 leaves a capped viscous friction, which creeps"""
+    tangential_damping: float
+    """N s/m of the bristle"""
+
+    @classmethod
+    def of(cls, surface: Surface, inverse_mass: float) -> ContactMaterial:
+        """The material of a surface.
+
+        The bristle is as stiff as the surface; its damping is the surface's, but at most critical for the mass that slides, since
+        more would only ask for shorter steps.
+
+        Args:
+            surface: of the thing that is touched.
+            inverse_mass: 1/kg, largest at the contact.
+        """
+        critical = 2.0 * float(np.sqrt(surface.stiffness / inverse_mass)) if inverse_mass > 0.0 else surface.damping
+        moving = surface.friction if surface.friction_moving is None else surface.friction_moving
+        return cls(
+            stiffness=surface.stiffness,
+            damping=surface.damping,
+            transition=_TRANSITION,
+            mu_static=surface.friction,
+            mu_dynamic=moving,
+            critical_velocity=_CRITICAL_VELOCITY,
+            tangential_stiffness=surface.stiffness,
+            tangential_damping=min(surface.damping, critical),
+        )
+
+    def row(self) -> Array:
+        """(8,) for the compiled law."""
+        return np.array(
+            [
+                self.stiffness,
+                self.damping,
+                self.transition,
+                self.mu_static,
+                self.mu_dynamic,
+                self.critical_velocity,
+                self.tangential_stiffness,
+                self.tangential_damping,
+            ]
+        )
+
+
+@dataclass(frozen=True)
+class ContactPair:
+    """Two geoms that can touch: the first a sphere, capsule or box, the second a plane, box or sphere."""
+
+    geom_a: str
+    geom_b: str
+    material: ContactMaterial
+
+
+@dataclass(slots=True)
+class ContactState:
+    """Contacts of one world. Consumed by `advance`."""
+
+    loop: ContactLoop
+    bristles: Array
+    """(slots, 5) deflection (3) m, friction coefficient, sliding or not"""
+    push: Array
+    """(nbody, 6) force and torque at each body's centre of mass from elsewhere, N and N·m"""
+    force: Array
+    """(slots, 3) on the pair's first geom, world axes, N"""
+    point: Array
+    """(slots, 3) where it acts, world, m"""
+    penetration: Array
+    """(slots,) m, above zero where the shapes overlap"""
+
+
+class ExplicitContacts:
+    """The contacts of a model.
+
+    Args:
+        model: compiled, with the geoms of all pairs; its own contacts between them switched off.
+        pairs: what can touch what.
+
+    Raises:
+        ConfigError: a pair of shapes without a law.
+    """
+
+    def __init__(self, model: mujoco.MjModel, pairs: Sequence[ContactPair]) -> None:
+        self.model = model
+        self.pairs = tuple(pairs)
+        self._geoms = [(model.geom(pair.geom_a).id, model.geom(pair.geom_b).id) for pair in self.pairs]
+        self._slots: list[slice] = []
+        self.init(mujoco.MjData(model))
+
+    def init(self, data: mujoco.MjData) -> ContactState:
+        """Untouched contacts of a world, at the forces of its present configuration."""
+        loop = ContactLoop(self.model, data, *_half_steps())
+        self._slots = [self._add(loop, *geoms, pair) for geoms, pair in zip(self._geoms, self.pairs, strict=True)]
+        n = loop.slots
+        state = ContactState(
+            loop=loop,
+            bristles=np.zeros((n, BRISTLE_SIZE)),
+            push=np.zeros((self.model.nbody, 6)),
+            force=np.zeros((n, 3)),
+            point=np.zeros((n, 3)),
+            penetration=np.zeros(n),
+        )
+        for pair, slots in zip(self.pairs, self._slots, strict=True):
+            state.bristles[slots, 3] = pair.material.mu_static
+        mujoco.mj_step1(self.model, data)
+        self.refresh(state)
+        return state
+
+    def advance(self, state: ContactState, steps: int) -> None:
+        """Makes physics steps. Forces follow every one of them.
+
+        Raises:
+            RunFailedError: a force or a velocity is not finite.
+        """
+        dt = float(self.model.opt.timestep)
+        done = state.loop.advance(
+            steps, dt, state.push, state.bristles, state.force, state.point, state.penetration
+        )
+        if done < steps:
+            raise RunFailedError(self._blown_up(state, dt))
+
+    def refresh(self, state: ContactState) -> None:
+        """Forces of the present configuration, without letting time pass."""
+        state.loop.evaluate(0.0, state.push, state.bristles, state.force, state.point, state.penetration)
+
+    def wrench(self, state: ContactState, index: int, about: Array) -> Array:
+        """Wrench (6,) on the first geom of pair number `index`, about a point (3,), world axes."""
+        slots = self._slots[index]
+        force, lever = state.force[slots], state.point[slots] - about
+        return np.concatenate([force.sum(axis=0), np.cross(lever, force).sum(axis=0)])
+
+    def touching(self, state: ContactState, index: int) -> bool:
+        """Whether pair number `index` pushes."""
+        return bool(np.any(state.force[self._slots[index]]))
+
+    def _add(self, loop: ContactLoop, geom_a: int, geom_b: int, pair: ContactPair) -> slice:
+        try:
+            first, count = loop.add_pair(geom_a, geom_b, pair.material.row())
+        except ValueError as error:
+            raise ConfigError(
+                f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule or box against a"
+                " plane or a box, a sphere or capsule against a sphere"
+            ) from error
+        return slice(first, first + count)
+
+    def _blown_up(self, state: ContactState, dt: float) -> str:
+        worst = int(np.argmax(np.where(np.isfinite(state.penetration), state.penetration, np.inf)))
+        index = next(i for i, slots in enumerate(self._slots) if slots.start <= worst < slots.stop)
+        pair = self.pairs[index]
+        return (
+            f"the simulation of contacts diverged (deepest: {pair.geom_a!r} in {pair.geom_b!r}, K = {pair.material.stiffness:g} N/m,"
+            f" D = {pair.material.damping:g} N s/m); the physics step of {dt:g} s may be too long, or the command unstable"
+        )
+
+
+def require_stable_step(name: str, material: ContactMaterial, inverse_mass: float, dt: float) -> None:
+    """Refuses a physics step at which a contact would gain energy: (K dt² + 2 D dt)/m must stay below 4.
+
+    Args:
+        name: of the contact, for the error.
+        material: of the contact.
+        inverse_mass: 1/kg, largest at the contact.
+        dt: s.
+
+    Raises:
+        ConfigError: the step is too long; names the longest one that is stable.
+    """
+    K, D = material.stiffness, material.damping
+    if inverse_mass * (K * dt**2 + 2.0 * D * dt) < 4.0:
+        return
+    longest = (np.sqrt(D**2 + 4.0 * K / inverse_mass) - D) / K
+    raise ConfigError(
+        f"contact {name!r}: a physics step of {dt:g} s is too long for K = {K:g} N/m and D = {D:g} N s/m on"
+        f" {1.0 / inverse_mass:.3g} kg; it must be below {longest:.3g} s"
+    )
+
+
+def inverse_mass_at(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
+    """Largest eigenvalue of J M⁻¹ Jᵀ at a geom's centre, 1/kg; for a box, of its fastest mode when it stands on four corners.
+
+    Args:
+        model: compiled.
+        data: in the configuration of interest, positions computed.
+        geom: index.
+    """
+    body = int(model.geom_bodyid[geom])
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_BOX and model.body_weldid[body] != 0:
+        half2 = np.asarray(model.geom_size[geom]) ** 2
+        rocking = max(half2[i] / (half2[i] + half2[j]) for i in range(3) for j in range(3) if i != j)
+        return 4.0 * max(1.0, 3.0 * float(rocking)) / float(model.body_mass[body])
+    J = np.zeros((3, model.nv))
+    mujoco.mj_jac(model, data, J, None, data.geom_xpos[geom], body)
+    M = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, M)
+    return float(np.linalg.eigvalsh(J @ np.linalg.solve(M, J.T))[-1])
+
+
+@functools.cache
+def _half_steps() -> tuple[int, int]:
+    """Addresses of mj_step1 and mj_step2 in the library that the mujoco package has loaded."""
+    folder = Path(str(mujoco.__file__)).parent
+    names = sorted([*folder.glob("libmujoco.so*"), *folder.glob("libmujoco*.dylib"), *folder.glob("mujoco.dll")])
+    if not names:
+        raise RunFailedError(f"no MuJoCo library in {folder}; reinstall the mujoco package")
+    library = ctypes.CDLL(str(names[0]))
+    first, second = (ctypes.cast(getattr(library, name), ctypes.c_void_p).value for name in ("mj_step1", "mj_step2"))
+    assert first is not None
+    assert second is not None
+    return first, second
