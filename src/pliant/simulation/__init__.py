@@ -4,7 +4,9 @@ from pliant.simulation.disturbances import Push, random_pushes
 from pliant.simulation.force_sensor import ForceSensor
 from pliant.simulation.imperfect import ImperfectPlant, ImperfectWorld
 from pliant.simulation.imperfections import Imperfections
-from pliant.simulation.plant import JointEffects, MujocoPlant, World
+from pliant.simulation.joint_effects import JointEffects
+from pliant.simulation.link_capsule import LinkCapsule
+from pliant.simulation.plant import MujocoPlant, World
 from pliant.simulation.scene import Ball, Box, Plane, Scene, Surface, floor, table, wall
 
 __all__ = [
@@ -15,6 +17,7 @@ __all__ = [
     "ImperfectWorld",
     "Imperfections",
     "JointEffects",
+    "LinkCapsule",
     "MujocoPlant",
     "Plane",
     "Push",

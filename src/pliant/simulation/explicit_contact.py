@@ -1,7 +1,7 @@
 """Stiff contacts with stiction, computed as forces between the physics engine's two half steps.
 
-`F_n = max(0, s(p/w)(K p + D ṗ))` with s a smoothstep over the transition w, and a bristle that sticks below the static friction
-limit ([HapFIC] sec. III). The law itself and its loop are compiled (cpp/contact).
+`F_n = max(0, s(p/w)(K p + D ṗ))` with s a smoothstep over the transition w, and a bristle that sticks below the static
+friction limit ([HapFIC] sec. III). The law itself and its loop are compiled (cpp/contact).
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ class ContactMaterial:
     def of(cls, surface: Surface, inverse_mass: float) -> ContactMaterial:
         """The material of a surface.
 
-        The bristle is as stiff as the surface; its damping is the surface's, but at most critical for the mass that slides, since
-        more would only ask for shorter steps.
+        The bristle is as stiff as the surface; its damping is the surface's, but at most critical for the mass that
+        slides, since more would only ask for shorter steps.
 
         Args:
             surface: of the thing that is touched.
@@ -153,9 +153,7 @@ class ExplicitContacts:
             RunFailedError: a force or a velocity is not finite.
         """
         dt = float(self.model.opt.timestep)
-        done = state.loop.advance(
-            steps, dt, state.push, state.bristles, state.force, state.point, state.penetration
-        )
+        done = state.loop.advance(steps, dt, state.push, state.bristles, state.force, state.point, state.penetration)
         if done < steps:
             raise RunFailedError(self._blown_up(state, dt))
 
@@ -178,8 +176,8 @@ class ExplicitContacts:
             first, count = loop.add_pair(geom_a, geom_b, pair.material.row())
         except ValueError as error:
             raise ConfigError(
-                f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule or box against a"
-                " plane or a box, a sphere or capsule against a sphere"
+                f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule or box"
+                " against a plane or a box, a sphere or capsule against a sphere"
             ) from error
         return slice(first, first + count)
 
@@ -188,9 +186,35 @@ class ExplicitContacts:
         index = next(i for i, slots in enumerate(self._slots) if slots.start <= worst < slots.stop)
         pair = self.pairs[index]
         return (
-            f"the simulation of contacts diverged (deepest: {pair.geom_a!r} in {pair.geom_b!r}, K = {pair.material.stiffness:g} N/m,"
-            f" D = {pair.material.damping:g} N s/m); the physics step of {dt:g} s may be too long, or the command unstable"
+            f"the simulation of contacts diverged (deepest: {pair.geom_a!r} in {pair.geom_b!r}, K ="
+            f" {pair.material.stiffness:g} N/m, D = {pair.material.damping:g} N s/m); the physics step of {dt:g} s"
+            " may be too long, or the command unstable"
         )
+
+
+def explicit_contacts(
+    model: mujoco.MjModel, start: Array, pairs: Sequence[tuple[str, str, Surface]]
+) -> ExplicitContacts:
+    """The contacts of a model, checked for the physics step they need.
+
+    Args:
+        model: compiled; `timestep` set.
+        start: (n,) configuration of the robot, whose joints come first.
+        pairs: two geoms and what they feel like to each other.
+
+    Raises:
+        ConfigError: a pair of shapes without a law, or a physics step that is too long for a contact.
+    """
+    data = mujoco.MjData(model)
+    data.qpos[: start.shape[0]] = start
+    mujoco.mj_forward(model, data)
+    made: list[ContactPair] = []
+    for a, b, surface in pairs:
+        inverse_mass = sum(inverse_mass_at(model, data, model.geom(name).id) for name in (a, b))
+        material = ContactMaterial.of(surface, inverse_mass)
+        require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
+        made.append(ContactPair(a, b, material))
+    return ExplicitContacts(model, made)
 
 
 def require_stable_step(name: str, material: ContactMaterial, inverse_mass: float, dt: float) -> None:
@@ -216,7 +240,8 @@ def require_stable_step(name: str, material: ContactMaterial, inverse_mass: floa
 
 
 def inverse_mass_at(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
-    """Largest eigenvalue of J M⁻¹ Jᵀ at a geom's centre, 1/kg; for a box, of its fastest mode when it stands on four corners.
+    """Largest eigenvalue of J M⁻¹ Jᵀ at a geom's centre, 1/kg; for a box, of its fastest mode when it stands on four
+    corners.
 
     Args:
         model: compiled.

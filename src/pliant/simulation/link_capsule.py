@@ -46,7 +46,8 @@ class LinkCapsule:
         length = float(np.linalg.norm(along))
         if length <= self.end_margin:
             raise ConfigError(
-                f"link capsule {self.start!r}: end_margin must be below its length of {length:g} m, got {self.end_margin:g} m"
+                f"link capsule {self.start!r}: end_margin must be below its length of {length:g} m, got"
+                f" {self.end_margin:g} m"
             )
         tip = np.array(start.pos) + along * (1.0 - self.end_margin / length)
         geom = start.parent.add_geom(

@@ -4,45 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from pliant.errors import ConfigError, options
+from pliant.errors import ConfigError
 from pliant.interfaces import Plant
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
 from pliant.signals import Command, Measurement, Truth
+from pliant.simulation.contact_pairs import PairOfGeoms, pairs_of
 from pliant.simulation.contact_recipe import add_pair, apply_surface
 from pliant.simulation.disturbances import Push
+from pliant.simulation.explicit_contact import ContactState, ExplicitContacts, explicit_contacts
 from pliant.simulation.force_sensor import ForceSensor
-from pliant.simulation.scene import Plane, Scene, Thing
+from pliant.simulation.joint_effects import JointEffects
+from pliant.simulation.link_capsule import LinkCapsule
+from pliant.simulation.scene import Plane, Scene
 from pliant.spatial import Array
-
-Compensation = Literal["none", "gravity", "gravity+coriolis"]
-
-
-@dataclass(frozen=True)
-class JointEffects:
-    """What the joints do by themselves. Damping and friction are scalars or (n,)."""
-
-    friction: float | tuple[float, ...] = 0.0
-    """N·m of dry friction"""
-    damping: float | tuple[float, ...] = 0.0
-    """N·m s/rad"""
-    compensation: Compensation = "none"
-    """what the robot's own controller adds, invisibly, to the torque that is sent"""
-
-    def __post_init__(self) -> None:
-        for name in ("friction", "damping"):
-            value = np.asarray(getattr(self, name))
-            if not (np.isfinite(value).all() and (value >= 0.0).all()):
-                raise ConfigError(f"joint {name} must not be negative, got {getattr(self, name)}")
-        if self.compensation not in ("none", "gravity", "gravity+coriolis"):
-            valid = options(["none", "gravity", "gravity+coriolis"], self.compensation)
-            raise ConfigError(f"unknown compensation {self.compensation!r}; {valid}")
 
 
 @dataclass(slots=True)
@@ -56,6 +36,8 @@ class World:
     """frame → (6,) contact wrench of the last physics step, world axes"""
     touching: frozenset[str]
     """frames and robot parts that touched something in the last physics step"""
+    contacts: ContactState | None = None
+    """of the explicit contact law"""
 
 
 class MujocoPlant(Plant[World]):
@@ -67,11 +49,12 @@ class MujocoPlant(Plant[World]):
         robot: the robot; frames with a contact radius can touch the things in the scene.
         scene: what it can meet.
         period: control period in s, a whole multiple of `physics_step`. Torques are held constant over it.
-        physics_step: s.
+        physics_step: s; None: 0.5 ms, or 20 µs where the scene's contacts are explicit forces.
         start: (n,) configuration at the start, rad; None: the robot's home.
         joints: friction, damping and compensation of the joints.
         sensors: force/torque sensors.
         pushes: disturbances.
+        links: parts of the robot that touch things along their length, beside the frames with a contact radius.
         observe: more frames whose true pose is to be known; those that touch, sense or are pushed are in any case.
 
     Raises:
@@ -86,32 +69,42 @@ class MujocoPlant(Plant[World]):
         scene: Scene | None = None,
         *,
         period: float = 1e-3,
-        physics_step: float = 5e-4,
+        physics_step: float | None = None,
         start: npt.ArrayLike | None = None,
         joints: JointEffects | None = None,
         sensors: Sequence[ForceSensor] = (),
         pushes: Sequence[Push] = (),
+        links: Sequence[LinkCapsule] = (),
         observe: Sequence[str] = (),
     ) -> None:
         self.robot = robot
         self.scene = scene or Scene()
         self.period = period
+        explicit = self.scene.contact == "explicit"
+        if physics_step is None:
+            physics_step = 2e-5 if explicit else 5e-4
         self.substeps = _substeps(period, physics_step)
         self.joints = joints or JointEffects()
         self.sensors = tuple(sensors)
         self.pushes = tuple(pushes)
+        self.links = tuple(links)
         self.start = robot.vector(robot.home if start is None else start, "start")
         frames = [*observe, *(s.frame for s in sensors), *(p.frame for p in pushes), *robot.contact_radius]
-        for frame in frames:
+        frames += [link.start for link in self.links]
+        for frame in [*frames, *(link.end for link in self.links)]:
             robot.frame_id(frame)
-        self.model = self._compile(physics_step)
+        self._parts = {_touch(frame): frame for frame in robot.contact_radius}
+        self._parts |= {_along(link.start): link.start for link in self.links}
+        pairs = pairs_of(self.scene, self._parts)
+        self.model = self._compile(physics_step, pairs)
+        self._explicit = explicit_contacts(self.model, self.start, pairs) if explicit else None
         self._sites = {name: self.model.site(name).id for name in dict.fromkeys(frames)}
         self._movable = {
             thing.name: self.model.body(thing.name).id
             for thing in self.scene.things
             if not isinstance(thing, Plane) and thing.mass > 0.0
         }
-        self._contact_frames = {self.model.geom(_touch(frame)).id: frame for frame in robot.contact_radius}
+        self._contact_frames = {self.model.geom(geom).id: frame for geom, frame in self._parts.items()}
 
     # ------------------------------------------------------------------ Plant
 
@@ -122,19 +115,21 @@ class MujocoPlant(Plant[World]):
         mujoco.mj_step1(self.model, data)
         self._apply(world, np.zeros(self.robot.n))  # what the robot compensates by itself, before the first command
         mujoco.mj_forward(self.model, data)
-        self._read_contacts(world)
+        if self._explicit is None:
+            self._read_contacts(world)
+        else:
+            world.contacts = self._explicit.init(data)
+            self._read_explicit(world, self._explicit)
         mujoco.mj_step1(self.model, data)
         return self._measure(world, np.zeros(self.robot.n)), world
 
     def step(self, command: Command, world: World) -> tuple[Measurement, World]:
         limit = self.robot.torque_limit
         torque = np.clip(command.torque, -limit, limit)
-        for last in range(self.substeps - 1, -1, -1):
-            self._apply(world, torque)
-            mujoco.mj_step2(self.model, world.data)
-            if last == 0:
-                self._read_contacts(world)
-            mujoco.mj_step1(self.model, world.data)
+        if self._explicit is None:
+            self._step_mujoco(world, torque)
+        else:
+            self._step_explicit(world, torque, self._explicit)
         world.ticks += 1
         return self._measure(world, torque), world
 
@@ -155,7 +150,41 @@ class MujocoPlant(Plant[World]):
 
     # ------------------------------------------------------------------ inside
 
-    def _compile(self, physics_step: float) -> mujoco.MjModel:
+    def _step_mujoco(self, world: World, torque: Array) -> None:
+        for last in range(self.substeps - 1, -1, -1):
+            self._apply(world, torque)
+            mujoco.mj_step2(self.model, world.data)
+            if last == 0:
+                self._read_contacts(world)
+            mujoco.mj_step1(self.model, world.data)
+
+    def _step_explicit(self, world: World, torque: Array, contacts: ExplicitContacts) -> None:
+        assert world.contacts is not None
+        for steps in _shares(self.substeps, 4 if self._follows_state else 1):
+            self._apply(world, torque)
+            contacts.advance(world.contacts, steps)
+            mujoco.mj_step1(self.model, world.data)
+        contacts.refresh(world.contacts)
+        self._read_explicit(world, contacts)
+
+    @property
+    def _follows_state(self) -> bool:
+        """Whether something besides the held torque changes within a period."""
+        return bool(self.pushes) or self.joints.compensation == "gravity+coriolis"
+
+    def _read_explicit(self, world: World, contacts: ExplicitContacts) -> None:
+        assert world.contacts is not None
+        world.wrenches = {frame: np.zeros(6) for frame in self._contact_frames.values()}
+        touching: set[str] = set()
+        for index, pair in enumerate(contacts.pairs):
+            frame = self._parts.get(pair.geom_a)
+            if frame is not None and contacts.touching(world.contacts, index):
+                about = world.data.site_xpos[self._sites[frame]]
+                world.wrenches[frame] += contacts.wrench(world.contacts, index, about)
+                touching.add(frame)
+        world.touching = frozenset(touching)
+
+    def _compile(self, physics_step: float, pairs: Sequence[PairOfGeoms]) -> mujoco.MjModel:
         spec = spec_from_robot(self.robot)
         spec.option.timestep = physics_step
         spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
@@ -167,10 +196,14 @@ class MujocoPlant(Plant[World]):
                 name=_touch(frame), type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=site.pos
             )
             geom.contype, geom.conaffinity, geom.mass, geom.rgba = 0, 0, 0.0, [0.20, 0.22, 0.25, 1.0]
+        for link in self.links:
+            link.add_to(spec, _along(link.start))
         for thing in self.scene.things:
             geom = thing.add_to(spec)
             geom.contype, geom.conaffinity = 0, 0
-        pairs = self._pairs() if self.scene.contact == "mujoco" else []
+        if self.scene.contact == "explicit":
+            spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+            pairs = []
         for a, b, _ in pairs:
             add_pair(spec, f"{a}|{b}", a, b)
         _add_light(spec)
@@ -178,17 +211,9 @@ class MujocoPlant(Plant[World]):
             model = spec.compile()
         except ValueError as error:
             raise ConfigError(f"MuJoCo cannot build robot {self.robot.name!r} in this scene: {error}") from error
-        for a, b, thing in pairs:
-            apply_surface(model, f"{a}|{b}", thing.surface)
+        for a, b, surface in pairs:
+            apply_surface(model, f"{a}|{b}", surface)
         return model
-
-    def _pairs(self) -> list[tuple[str, str, Thing]]:
-        """Pairs of geoms that can touch, and the thing whose surface rules the contact."""
-        things = self.scene.things
-        pairs = [(_touch(frame), thing.name, thing) for frame in self.robot.contact_radius for thing in things]
-        movable = [thing for thing in things if not isinstance(thing, Plane) and thing.mass > 0.0]
-        pairs += [(thing.name, plane.name, thing) for thing in movable for plane in things if isinstance(plane, Plane)]
-        return pairs
 
     def _add_joint_effects(self, spec: mujoco.MjSpec) -> None:
         friction = np.broadcast_to(np.asarray(self.joints.friction, dtype=np.float64), (self.robot.n,))
@@ -221,8 +246,7 @@ class MujocoPlant(Plant[World]):
     def _read_contacts(self, world: World) -> None:
         """Sums the contact forces on every contact frame."""
         data = world.data
-        for wrench in world.wrenches.values():
-            wrench[:] = 0.0
+        world.wrenches = {frame: np.zeros(6) for frame in self._contact_frames.values()}
         touching: set[str] = set()
         local = np.zeros(6)
         for index in range(data.ncon):
@@ -280,6 +304,11 @@ def _touch(frame: str) -> str:
     return f"touch:{frame}"
 
 
+def _along(frame: str) -> str:
+    """Name of the geom with which a link that starts at a frame touches things."""
+    return f"along:{frame}"
+
+
 def _substeps(period: float, physics_step: float) -> int:
     if not (physics_step > 0.0 and period > 0.0):
         raise ConfigError(f"period and physics step must be above zero, got {period} s and {physics_step} s")
@@ -289,6 +318,11 @@ def _substeps(period: float, physics_step: float) -> int:
             f"the control period must be a whole multiple of the physics step, got {period:g} s and {physics_step:g} s"
         )
     return round(ratio)
+
+
+def _shares(total: int, parts: int) -> list[int]:
+    """A whole number in about equal parts, none of them zero."""
+    return [len(part) for part in np.array_split(np.arange(total), min(parts, total))]
 
 
 def _add_light(spec: mujoco.MjSpec) -> None:

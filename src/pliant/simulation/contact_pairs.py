@@ -1,0 +1,47 @@
+"""Which geoms of a scene can touch, and what they feel like to each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import combinations
+
+from pliant.simulation.scene import Ball, Box, Plane, Scene, Surface, Thing
+
+PairOfGeoms = tuple[str, str, Surface]
+"""two geoms, the second the one that the contact's normal belongs to"""
+
+
+def pairs_of(scene: Scene, robot_geoms: Iterable[str]) -> list[PairOfGeoms]:
+    """Every pair that can touch.
+
+    The robot is rigid, so a thing's own surface rules its contact with the robot. Between two things it is that of the
+    one that can move, or of the softer one if both can.
+
+    Args:
+        scene: the things.
+        robot_geoms: geoms of the robot that touch things.
+    """
+    pairs: list[PairOfGeoms] = [(geom, thing.name, thing.surface) for geom in robot_geoms for thing in scene.things]
+    for first, second in combinations(scene.things, 2):
+        if not (_can_move(first) or _can_move(second)):
+            continue
+        a, b = sorted((first, second), key=_rank)
+        pairs.append((a.name, b.name, _surface(a, b)))
+        if isinstance(a, Box) and isinstance(b, Box) and scene.contact == "explicit":
+            pairs.append((b.name, a.name, _surface(a, b)))  # boxes meet through their corners, those of both
+    return pairs
+
+
+def _rank(thing: Thing) -> int:
+    """Order in which the explicit law takes a pair: balls press on boxes, and everything on planes."""
+    return 0 if isinstance(thing, Ball) else 1 if isinstance(thing, Box) else 2
+
+
+def _can_move(thing: Thing) -> bool:
+    return not isinstance(thing, Plane) and thing.mass > 0.0
+
+
+def _surface(a: Thing, b: Thing) -> Surface:
+    if _can_move(a) and _can_move(b):
+        return min(a.surface, b.surface, key=lambda surface: surface.stiffness)
+    return a.surface if _can_move(a) else b.surface
