@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pliant.errors import SignalError
+from pliant.errors import RunFailedError, SignalError
 from pliant.interfaces import Controller, Estimator, Observer, Plant, ReferenceSource
 from pliant.signals import Measurement, Tick
 from pliant.spatial import all_finite
@@ -44,7 +44,7 @@ def run(
         observers: called once a period with a `Tick`; telemetry and the live page attach here and nowhere else.
 
     Returns:
-        How many periods were completed, and why it stopped early if it did. A measurement that is not finite stops the run
+        How many periods were completed, and why it stopped early if it did: a plant that failed, or a signal. A measurement that is not finite stops the run
         before a command is computed from it, so that the last torque sent is a safe one and everything recorded is kept.
     """
     measurement, world = plant.init()
@@ -68,7 +68,10 @@ def run(
         tick = Tick(measurement, estimate, reference, command, plant.truth(world), wall)
         for observe in observers:
             observe(tick)
-        measurement, world = plant.step(command, world)
+        try:
+            measurement, world = plant.step(command, world)
+        except RunFailedError as error:
+            return Outcome(ticks, measurement.time, f"{error} at t = {measurement.time:.4f} s")
         ticks += 1
     return Outcome(ticks, measurement.time)
 
