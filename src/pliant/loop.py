@@ -44,8 +44,9 @@ def run(
         observers: called once a period with a `Tick`; telemetry and the live page attach here and nowhere else.
 
     Returns:
-        How many periods were completed, and why it stopped early if it did: a plant that failed, or a signal. A measurement that is not finite stops the run
-        before a command is computed from it, so that the last torque sent is a safe one and everything recorded is kept.
+        How many periods were completed, and why it stopped early if it did. A plant that fails stops the run, and so
+        does a measurement that is not finite, before a command is computed from it: the last torque sent is a safe one
+        and everything recorded is kept.
     """
     measurement, world = plant.init()
     est = ref = ctl = None
