@@ -1,0 +1,122 @@
+"""What is in a log, for people: the run, its channels, and the metrics that any log gives."""
+
+from __future__ import annotations
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from pliant.telemetry import metrics
+from pliant.telemetry.log import Log
+from pliant.telemetry.summary import Metric
+from pliant.telemetry.table import number
+
+_MM = 1e3  # mm per m
+
+
+def describe(log: Log) -> RenderableType:
+    """The contents of a log: a header, a table of channels, a table of metrics."""
+    return Group(_header(log), _channels(log), _metrics(log))
+
+
+def log_metrics(log: Log) -> tuple[Metric, ...]:
+    """Metrics over the whole log that need no knowledge of the task.
+
+    Returns:
+        Per frame with a reference: RMSE of the position per axis (true position where the log has it), and the rms
+        error of the force along the axes on which one was asked for. For the torque sent: variation, peak, share of
+        time in which it was clamped.
+    """
+    found: list[Metric] = []
+    for frame in frames(log):
+        found += _tracking(log, frame)
+        found += _force(log, frame)
+    if "command/torque" in log and log["command/torque"].shape[0] > 1:
+        torque, time = log["command/torque"], log.time("command/torque")
+        period = float(np.median(np.diff(time)))
+        found.append(Metric("torque variation", metrics.torque_variation(torque, period), "N·m/s"))
+        found.append(Metric("peak torque", metrics.peak(torque), "N·m"))
+        clamped = np.any(log["command/clamped"] != 0.0, axis=1)
+        found.append(Metric("time at a torque limit", 100.0 * float(np.mean(clamped)), "%"))
+    return tuple(found)
+
+
+def frames(log: Log) -> list[str]:
+    """Frames for which the log has a reference position."""
+    return [name.split("/")[1] for name in log.matching("/position") if name.startswith("reference/")]
+
+
+def _tracking(log: Log, frame: str) -> list[Metric]:
+    actual, reference = f"truth/{frame}/position", f"reference/{frame}/position"
+    if actual not in log or log[actual].shape != log[reference].shape:
+        return []
+    errors = metrics.rmse(log[actual], log[reference]) * _MM
+    return [
+        Metric(f"{frame} position rmse {axis}", float(error), "mm") for axis, error in zip("xyz", errors, strict=True)
+    ]
+
+
+def _force(log: Log, frame: str) -> list[Metric]:
+    wanted = log[f"reference/{frame}/wrench"][:, :3]
+    source = next((f"{s}/{frame}/wrench" for s in ("truth", "estimate") if f"{s}/{frame}/wrench" in log), None)
+    if source is None or log[source].shape[0] != wanted.shape[0]:
+        return []
+    actual = log[source][:, :3]
+    asked = [axis for axis in range(3) if np.any(wanted[:, axis] != 0.0)]
+    return [
+        Metric(f"{frame} force rms error {'xyz'[axis]}", metrics.rms_error(actual[:, axis], wanted[:, axis]), "N")
+        for axis in asked
+    ]
+
+
+def _header(log: Log) -> RenderableType:
+    info = log.info
+    grid = Table.grid(padding=(0, 2))
+    rows = [
+        ("log", log.source),
+        ("run", " · ".join(part for part in (info.study, info.case, info.controller) if part) or "–"),
+        ("robot", info.robot or "–"),
+        ("seed", "–" if info.seed is None else str(info.seed)),
+        ("pliant", info.version),
+        ("length", f"{log.duration:.3f} s"),
+    ]
+    if phases := log.phases():
+        rows.append(("phases", ", ".join(f"{name or '(none)'} from {time:.3f} s" for time, name in phases)))
+    for name, value in rows:
+        grid.add_row(Text(name, style="bold"), value)
+    if log.failure:
+        grid.add_row(Text("failed", style="bold red"), Text(log.failure, style="red"))
+    if log.truncated:
+        grid.add_row(
+            Text("cut off", style="bold red"), Text("the file ends before its end; this is what it still holds")
+        )
+    return grid
+
+
+def _channels(log: Log) -> Table:
+    table = Table(title="channels", title_justify="left", header_style="bold")
+    table.add_column("channel", overflow="fold")
+    table.add_column("shape", no_wrap=True)
+    table.add_column("unit")
+    table.add_column("samples", justify="right")
+    table.add_column("rate, Hz", justify="right")
+    table.add_column("topic", overflow="fold", style="dim")
+    for channel in log.channels.values():
+        shape = "×".join(map(str, channel.shape)) or "1"
+        rate = f"{channel.rate:.4g}" if channel.rate else "–"
+        table.add_row(channel.name, shape, channel.unit or "–", str(channel.count), rate, channel.topic)
+    return table
+
+
+def _metrics(log: Log) -> RenderableType:
+    found = log_metrics(log)
+    if not found:
+        return Text("no metrics: the log has neither torques nor references", style="dim")
+    table = Table(title="metrics over the whole log", title_justify="left", header_style="bold")
+    table.add_column("metric")
+    table.add_column("value", justify="right")
+    table.add_column("unit")
+    for metric in found:
+        table.add_row(metric.name, number(metric.value), metric.unit)
+    return table

@@ -1,0 +1,280 @@
+"""Metrics: pure functions of arrays.
+
+Each takes the samples that it is to judge: cut the window with `between` first, and pass the true signals where there
+are any. A sample that is not finite makes the result NaN, which keeps no target: nothing that failed looks good. SI
+units throughout; `n` is the number of samples, `k` of axes or joints.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from pliant.errors import ShapeError
+from pliant.spatial import Array
+
+BREAK_FORCE = 1e-3  # N; [FFMPC] eq. 35 counts a sample at or below γ as a break of contact, its value is ours
+AUTHORS_WINDOW = 21  # samples of the moving average that the authors of [FFMPC] apply before they compute errors
+
+
+def between(time: Array, begin: float, end: float = math.inf) -> npt.NDArray[np.bool_]:
+    """Which samples lie in begin ≤ t < end. Args: time (n,) s; begin, end s. Returns: (n,) mask."""
+    rounding = 1e-9  # s; sample times are sums of periods
+    return (time >= begin - rounding) & (time < end - rounding)
+
+
+# ---------------------------------------------------------------------- errors
+
+
+def rmse(actual: Array, reference: Array) -> Array:
+    """Root mean square error per axis, `sqrt(mean_t (actual − reference)²)`.
+
+    Args:
+        actual: (n, k) or (n,).
+        reference: the same shape.
+
+    Returns:
+        (k,), or a 0-d array; in the unit of the arguments.
+
+    Raises:
+        ShapeError: the shapes differ or there is no sample.
+    """
+    return np.sqrt(np.mean(_error(actual, reference) ** 2, axis=0))
+
+
+def rms_error(actual: Array, reference: Array) -> float:
+    """Root mean square error over time and axes, in the unit of the arguments (n,) or (n, k). Raises ShapeError as
+    `rmse`."""
+    return math.sqrt(float(np.mean(_error(actual, reference) ** 2)))
+
+
+def mae(actual: Array, reference: Array) -> float:
+    """Mean absolute error over time and axes, in the unit of the arguments (n,) or (n, k). Raises ShapeError as `rmse`.
+
+    Of the world-z force it is E_λ, of the horizontal position (n, 2) E_P, of desired against measured torque (n, k)
+    E_τ, as [FFMPC] defines them in section VI.
+    """
+    return float(np.mean(np.abs(_error(actual, reference))))
+
+
+def max_error(actual: Array, reference: Array) -> float:
+    """Largest absolute error over time and axes, in the unit of the arguments. Raises ShapeError as `rmse`."""
+    return float(np.max(np.abs(_error(actual, reference))))
+
+
+def moving_average(values: Array, window: int = AUTHORS_WINDOW) -> Array:
+    """Centred moving average, as the authors of [FFMPC] smooth before they compute their errors. For the variant
+    beside, never instead.
+
+    Args:
+        values: (n,) or (n, k).
+        window: samples, odd; near the ends the window shrinks to what is there, equally on both sides.
+
+    Returns:
+        The same shape and unit.
+
+    Raises:
+        ShapeError: no sample, or the window is not odd and positive.
+    """
+    values = _some(values)
+    if window < 1 or window % 2 == 0:
+        raise ShapeError(f"the window of a centred moving average must be an odd number of samples, got {window}")
+    n = values.shape[0]
+    index = np.arange(n)
+    half = np.minimum(window // 2, np.minimum(index, n - 1 - index))
+    sums = np.concatenate((np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)))
+    counts = (2 * half + 1).reshape(-1, *(1,) * (values.ndim - 1))
+    return (sums[index + half + 1] - sums[index - half]) / counts
+
+
+# ---------------------------------------------------------------------- torque
+
+
+def torque_variation(torque: Array, period: float) -> float:
+    """How restless the torque is: mean over joints and time of `|τ_t − τ_{t−1}| / T_s`.
+
+    Args:
+        torque: (n, k) N·m of successive ticks, none left out.
+        period: T_s, s.
+
+    Returns:
+        N·m/s.
+
+    Raises:
+        ShapeError: fewer than two samples.
+    """
+    return float(np.mean(np.abs(_steps(torque)))) / period
+
+
+def peak(values: Array) -> float:
+    """Largest magnitude over time and axes, in the unit of the argument. For torques: peak torque, N·m; for f_z:
+    λ_max, N.
+
+    Raises:
+        ShapeError: there is no sample.
+    """
+    return float(np.max(np.abs(_some(values))))
+
+
+def torque_step_fraction(torque: Array, limits: Array) -> float:
+    """Largest change of torque from one tick to the next as a fraction of the joint's limit.
+
+    Args:
+        torque: (n, k) N·m.
+        limits: (k,) N·m.
+
+    Returns:
+        A fraction: 0.15 is 15 %.
+
+    Raises:
+        ShapeError: fewer than two samples.
+    """
+    return float(np.max(np.abs(_steps(torque)) / limits))
+
+
+# ---------------------------------------------------------------------- phases and energy
+
+
+def switch_rate(phase: npt.NDArray[np.generic], period: float) -> float:
+    """Switches of phase per second, mean over axes.
+
+    Args:
+        phase: (n,) or (n, k) a number per phase.
+        period: s between two samples.
+
+    Returns:
+        1/s.
+
+    Raises:
+        ShapeError: fewer than two samples.
+    """
+    changes = _steps(np.asarray(phase, dtype=np.float64)) != 0.0
+    return float(np.mean(changes)) / period
+
+
+def storage_margin(supplied: Array, stored: Array) -> float:
+    """How passive a port was: the smallest of `supplied_t − (stored_t − stored_0)` over time.
+
+    Args:
+        supplied: (n,) J, energy that went in through the port up to each sample.
+        stored: (n,) J.
+
+    Returns:
+        J. At 0 or above the port gave out no more than it had; below, it made that much energy.
+
+    Raises:
+        ShapeError: the shapes differ or there is no sample.
+    """
+    gained = _error(stored, np.full_like(_some(stored), stored[0]))
+    return float(np.min(_error(supplied, np.full_like(supplied, supplied[0])) - gained))
+
+
+# ---------------------------------------------------------------------- contact
+
+
+def break_share(force: Array, threshold: float = BREAK_FORCE) -> float:
+    """t_break: share of the samples in which the normal force is at or below a threshold ([FFMPC] eq. 35).
+
+    Args:
+        force: (n,) N, the reaction along the surface's normal, positive when pressed.
+        threshold: γ, N.
+
+    Returns:
+        A fraction: 0.33 is 33 %.
+
+    Raises:
+        ShapeError: there is no sample.
+    """
+    force = _some(force)
+    return float(np.mean(force <= threshold)) if np.isfinite(force).all() else math.nan
+
+
+def contact_breaks(force: Array, threshold: float = BREAK_FORCE) -> float:
+    """How often the contact is lost: falls of the normal force (n,) N from above a threshold to it or below.
+
+    Raises:
+        ShapeError: there is no sample.
+    """
+    force = _some(force)
+    if not np.isfinite(force).all():
+        return math.nan
+    touching = force > threshold
+    return float(np.count_nonzero(touching[:-1] & ~touching[1:]))
+
+
+# ---------------------------------------------------------------------- steps
+
+
+def settling_time(
+    time: Array, value: Array, target: float, start: float, command_time: float, band: float = 0.05
+) -> float:
+    """Time from the command of a step until the value is within a share of the step of its target, and stays there.
+
+    Args:
+        time: (n,) s, up to the next command.
+        value: (n,).
+        target: of the step, in the unit of the value.
+        start: what was asked for before the step.
+        command_time: s.
+        band: share of `|target − start|`.
+
+    Returns:
+        s; infinite if the last sample is outside, 0 if none is.
+
+    Raises:
+        ShapeError: the shapes differ, or there is no sample after the command.
+    """
+    after = between(time, command_time)
+    error = np.abs(_error(value, np.full_like(value, target))[after])
+    time = _some(time[after])
+    outside = np.flatnonzero(~(error <= band * abs(target - start)))  # NaN is outside
+    if not outside.size:
+        return 0.0
+    if outside[-1] == len(time) - 1:
+        return math.inf
+    return float(time[outside[-1] + 1]) - command_time
+
+
+def overshoot(value: Array, target: float, start: float) -> float:
+    """How far a step response passes its target: the largest excess in the direction of the step, at least 0.
+
+    Args:
+        value: (n,) from the command to the next one.
+        target: of the step.
+        start: what was asked for before it.
+
+    Returns:
+        In the unit of the value.
+
+    Raises:
+        ShapeError: there is no sample.
+    """
+    direction = math.copysign(1.0, target - start)
+    worst = float(np.max(direction * (_some(value) - target)))
+    return worst if math.isnan(worst) else max(0.0, worst)
+
+
+# ---------------------------------------------------------------------- checks
+
+
+def _error(actual: Array, reference: Array) -> Array:
+    actual, reference = _some(actual), np.asarray(reference, dtype=np.float64)
+    if actual.shape != reference.shape:
+        raise ShapeError(f"a metric needs two arrays of one shape, got {actual.shape} and {reference.shape}")
+    return actual - reference
+
+
+def _some(values: npt.ArrayLike) -> Array:
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim == 0 or array.shape[0] == 0:
+        raise ShapeError("a metric needs at least one sample, got none: is the window outside the run?")
+    return array
+
+
+def _steps(values: npt.ArrayLike) -> Array:
+    array = _some(values)
+    if array.shape[0] < 2:
+        raise ShapeError("a rate of change needs at least two samples, got one")
+    return np.diff(array, axis=0)

@@ -1,0 +1,87 @@
+"""Summaries as tables for the terminal: each value beside the paper's and the target, with missed targets marked."""
+
+from __future__ import annotations
+
+import math
+
+from rich.table import Table
+from rich.text import Text
+
+from pliant.telemetry.summary import Case, Metric, Summary
+
+MET, MISSED = "✓", "✗"
+
+
+def summary_table(summary: Summary) -> Table:
+    """A table with one row per metric, grouped by case and controller."""
+    title = f"{summary.study} · pliant {summary.version}" + ("" if summary.seed is None else f" · seed {summary.seed}")
+    table = Table(title=title, title_justify="left", title_style="bold", header_style="bold", expand=False)
+    for heading in ("case", "controller", "metric"):
+        table.add_column(heading, overflow="fold")
+    for heading in ("value", "paper", "target"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("unit")
+    table.add_column("", width=1)
+    for case in summary.cases:
+        _add_case(table, case)
+    return table
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number with so many significant digits and no exponent where it is readable without; a dash for none."""
+    if value is None:
+        return "–"
+    if math.isnan(value):
+        return "none"
+    if math.isinf(value):
+        return "never" if value > 0 else "-inf"
+    if value == 0.0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(value)))
+    if -4 <= magnitude < 6:
+        return f"{value:.{max(0, digits - 1 - magnitude)}f}"
+    return f"{value:.{digits - 1}e}"
+
+
+def value_text(metric: Metric) -> str:
+    """Value, with its standard deviation over runs where there is one."""
+    return number(metric.value) if metric.std is None else f"{number(metric.value)} ± {number(metric.std, 2)}"
+
+
+def target_text(metric: Metric) -> str:
+    """The bound with its direction; a dash without one."""
+    if metric.target is None:
+        return "–"
+    return f"{'≥' if metric.at_least else '≤'} {number(metric.target)}"
+
+
+def failed_text(case: Case) -> str:
+    """How many runs of a case did not reach their end; empty if all did."""
+    if not case.failures:
+        return ""
+    first = case.failures[0]
+    more = f" (and {len(case.failures) - 1} more)" if len(case.failures) > 1 else ""
+    return f"{len(case.failures)} of {case.runs} runs failed: {first}{more}"
+
+
+def _add_case(table: Table, case: Case) -> None:
+    names = (case.case, case.controller)
+    for metric in case.metrics:
+        missed = metric.met is False
+        mark = "" if metric.met is None else MISSED if missed else MET
+        table.add_row(
+            *names,
+            metric.name,
+            Text(value_text(metric), style="bold red" if missed else ""),
+            number(metric.paper),
+            target_text(metric),
+            metric.unit,
+            Text(mark, style="bold red" if missed else "green"),
+        )
+        names = ("", "")
+    if case.failures:
+        table.add_row(*names, Text(failed_text(case), style="bold red"), "", "", "", "", Text(MISSED, style="bold red"))
+        names = ("", "")
+    if case.note:
+        table.add_row(*names, Text(case.note, style="dim"))
+    table.add_section()
