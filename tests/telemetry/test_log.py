@@ -1,0 +1,96 @@
+"""Files that are no logs give one clear sentence; logs describe themselves."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import mcap.writer
+import numpy as np
+import pytest
+from rich.console import Console
+
+from pliant.errors import ConfigError, OutputError
+from pliant.telemetry import Log, Recorder, RunInfo
+from pliant.telemetry.describe import describe, log_metrics
+from tests.telemetry.ticks import JOINTS, make_tick
+
+
+@pytest.fixture(scope="module")
+def log() -> Log:
+    with Recorder(None, RunInfo("stack", "figure8", "capped", "lwr4", 3, JOINTS)) as recorder:
+        for k in range(40):
+            recorder(make_tick(k))
+    return recorder.log()
+
+
+def foreign() -> bytes:
+    buffer = io.BytesIO()
+    writer = mcap.writer.Writer(buffer)
+    writer.start()
+    writer.finish()
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"", "is empty"),
+        (b"x", "not an MCAP file"),
+        (b"time,q\n0,1\n" * 50, "not an MCAP file"),
+        (b"\x89MCAP0\r\n", "cut off or damaged"),
+        (b"\x89MCAP0\r\n" + b"\xff" * 100, "cut off or damaged"),
+        (foreign(), "not one of pliant's"),
+    ],
+)
+def test_what_is_not_a_log_says_so(tmp_path: Path, content: bytes, says: str) -> None:
+    path = tmp_path / "file.mcap"
+    path.write_bytes(content)
+    with pytest.raises(OutputError, match=says) as caught:
+        Log.open(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(OutputError, match="No such file"):
+        Log.open(tmp_path / "none.mcap")
+    with pytest.raises(OutputError, match="directory"):
+        Log.open(tmp_path)
+
+
+def test_an_unknown_channel_names_the_closest(log: Log) -> None:
+    with pytest.raises(ConfigError, match="did you mean 'measurement/q'"):
+        log["mesurement/q"]
+
+
+def test_arrays_cannot_be_changed_by_accident(log: Log) -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        log["measurement/q"][0] = 1.0
+
+
+def test_description_names_run_channels_and_metrics(log: Log) -> None:
+    console = Console(width=160, record=True, file=io.StringIO())
+    console.print(describe(log))
+    text = console.export_text()
+    for expected in (
+        "stack · figure8 · capped",
+        "lwr4",
+        "contact from 0.030 s",
+        *log.channels,
+        "rad/s",
+        "torque variation",
+    ):
+        assert expected in text
+    assert "cut off" not in text
+
+
+def test_metrics_of_a_log_come_from_the_true_signals(log: Log) -> None:
+    found = {metric.name: metric for metric in log_metrics(log)}
+    error = log["truth/tool/position"] - log["reference/tool/position"]
+    assert found["tool position rmse y"].value == pytest.approx(1e3 * np.sqrt(np.mean(error[:, 1] ** 2)))
+    force = log["truth/tool/wrench"][:, 2] - log["reference/tool/wrench"][:, 2]
+    assert found["tool force rms error z"].value == pytest.approx(np.sqrt(np.mean(force**2)))
+    assert found["tool position rmse y"].unit == "mm"
+    assert found["time at a torque limit"].value == 100.0
+    assert not any(name.startswith("elbow") for name in found)  # the log has no true position of the elbow

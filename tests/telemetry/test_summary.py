@@ -1,0 +1,133 @@
+"""Summaries: the file's exact form, runs that failed, tables that mark what was missed."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+import pliant
+from pliant.errors import OutputError
+from pliant.telemetry import Case, Metric, Summary, output_folder, over_runs
+from pliant.telemetry.markdown import summary_markdown
+from pliant.telemetry.table import number, summary_table
+
+SUMMARY = Summary(
+    "stack",
+    3,
+    (
+        Case(
+            "figure8-plain",
+            "capped",
+            (
+                Metric("rmse x", 0.81, "mm", paper=5.6, target=1.0, std=0.02),
+                Metric("rmse y", 2.3, "mm", paper=4.6, target=1.2),
+                Metric("settling", math.inf, "s", target=0.1),
+                Metric("reach", 31.0, "N", target=30.0, at_least=True),
+            ),
+            runs=10,
+            failures=("diverged at t = 3.1000 s",),
+            seeds=tuple(range(10)),
+        ),
+        Case("figure8-plain", "spring", (Metric("peak torque", 176.0, "N·m"),), note="control arm"),
+    ),
+)
+
+
+def test_the_file_has_the_promised_form(tmp_path: Path) -> None:
+    content = json.loads(SUMMARY.write(tmp_path).read_text(encoding="utf-8"))
+    assert {"study": "stack", "version": pliant.__version__, "seed": 3}.items() <= content.items()
+    first = content["cases"][0]
+    assert (first["case"], first["controller"]) == ("figure8-plain", "capped")
+    assert {"value": 0.81, "unit": "mm", "paper": 5.6}.items() <= first["metrics"]["rmse x"].items()
+    assert first["metrics"]["settling"]["value"] is None  # JSON has no infinity
+    assert (first["runs"], first["failed"]) == (10, 1)
+    assert content["cases"][1]["metrics"]["peak torque"] == {"value": 176.0, "unit": "N·m", "paper": None}
+
+
+def test_what_was_written_is_read_back(tmp_path: Path) -> None:
+    read = Summary.read(SUMMARY.write(tmp_path).parent)
+    assert read.cases[1] == SUMMARY.cases[1]
+    assert read.cases[0].metrics[:2] == SUMMARY.cases[0].metrics[:2]
+    assert math.isnan(read.cases[0].metric("settling").value)
+    assert read.cases[0].failures == SUMMARY.cases[0].failures
+
+
+def test_targets() -> None:
+    assert [metric.met for metric in SUMMARY.cases[0].metrics] == [True, False, False, True]
+    assert Metric("x", 1.0, "").met is None
+    assert Metric("x", math.nan, "", target=1.0).met is False
+    assert Metric("x", math.nan, "", target=1.0, at_least=True).met is False
+
+
+def test_mean_over_runs_hides_no_failure() -> None:
+    runs = [(Metric("a", value, "N", 2.0, 3.0),) for value in (1.0, 2.0, 6.0)]
+    (mean,) = over_runs(runs)
+    assert mean.value == pytest.approx(3.0)
+    assert mean.std == pytest.approx(math.sqrt(14.0 / 3.0))
+    assert (mean.unit, mean.paper, mean.target) == ("N", 2.0, 3.0)
+    (spoiled,) = over_runs([*runs, (Metric("a", math.nan, "N", 2.0, 3.0),)])
+    assert math.isnan(spoiled.value)
+    assert spoiled.met is False
+
+
+def test_table_and_markdown_show_targets_and_failures() -> None:
+    console = Console(width=160, record=True, file=io.StringIO())
+    console.print(summary_table(SUMMARY))
+    table = console.export_text()
+    markdown = summary_markdown(SUMMARY)
+    for text in (table, markdown):
+        for expected in (
+            "0.810 ± 0.020",
+            "5.60",
+            "≤ 1.00",
+            "≥ 30.0",
+            "never",
+            "1 of 10 runs failed: diverged",
+            "control arm",
+        ):
+            assert expected in text
+        assert (text.count("✗"), text.count("✓")) in {(2, 2), (3, 2)}  # the terminal marks the failed run too
+    assert "**2.30**" in markdown
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (1234.0, "1234"),
+        (0.00123, "0.00123"),
+        (99.96, "100.0"),
+        (-2.0, "-2.00"),
+        (1e-7, "1.00e-07"),
+        (None, "–"),
+    ],
+)
+def test_numbers_have_three_digits(value: float | None, text: str) -> None:
+    assert number(value) == text
+
+
+def test_output_folders(tmp_path: Path) -> None:
+    assert output_folder(tmp_path / "a" / "b").is_dir()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="a file of that name is there"):
+        output_folder(tmp_path / "file")
+    with pytest.raises(OutputError, match="cannot be created"):
+        output_folder(tmp_path / "file" / "below")
+    with pytest.raises(OutputError, match="cannot be"):
+        output_folder("/proc/pliant")
+    with pytest.raises(OutputError, match="cannot be written"):
+        SUMMARY.write(tmp_path / "nowhere")
+
+
+@pytest.mark.parametrize(
+    "content", ["", "[]", '{"study": "x"}', '{"study": "x", "seed": 1, "version": "1", "cases": [1]}']
+)
+def test_a_file_that_is_no_summary(tmp_path: Path, content: str) -> None:
+    (tmp_path / "summary.json").write_text(content)
+    with pytest.raises(OutputError, match="not a summary"):
+        Summary.read(tmp_path)
