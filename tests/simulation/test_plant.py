@@ -58,7 +58,7 @@ def leg_plant(robot: Robot, scene: Scene, step: float = 1e-4, **options: object)
 def test_contact_stiffness_is_in_newton_per_metre(leg3: Robot, stiffness: float) -> None:
     scene = Scene((floor(0.0, Surface(stiffness, 4 * np.sqrt(stiffness), friction=0.0)),))
     plant = leg_plant(leg3, scene)
-    world, wrench = press(plant, 20.0, 2.0)
+    world, wrench = press(plant, 20.0, 3.5)
     penetration = 0.02 - plant.truth(world).positions["foot"][2]
     assert wrench[2] == pytest.approx(20.0, rel=1e-4)
     assert stiffness * penetration == pytest.approx(wrench[2], rel=1e-5)

@@ -15,8 +15,8 @@ from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.studies.config import Config
 from pliant.telemetry.log import Log
-from pliant.telemetry.metrics import Metric
 from pliant.telemetry.schema import Channel
+from pliant.telemetry.summary import Metric
 
 
 class CaseConfig(Config):
@@ -27,6 +27,7 @@ class CaseConfig(Config):
     robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
     seed: int = Field(default=0, ge=0, description="of every random draw")
     duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    variant: str = Field(default="", description="what distinguishes this run from others of the same case and controller")
 
 
 C = TypeVar("C", bound=CaseConfig)
@@ -52,7 +53,7 @@ class Result:
     """What came out of one run."""
 
     config: CaseConfig
-    metrics: Mapping[str, Metric]
+    metrics: tuple[Metric, ...]
     failure: str | None = None
     """why it stopped early; None if it ran to its end"""
     warnings: tuple[str, ...] = ()
@@ -75,9 +76,14 @@ class Study(ABC, Generic[C]):
             raise ConfigError(f"study {self.name!r} has no case {name!r}; {options(self.cases, name)}")
         return self.cases[name]
 
-    def variants(self) -> Sequence[C]:
-        """Every configuration of the full study, control arms included; by default the cases themselves."""
-        return list(self.cases.values())
+    def runs(self, case: str, seeds: int | None = None) -> Sequence[C]:
+        """Every run of a case in the full study: control arms, variants and seeds.
+
+        Args:
+            case: name of the case.
+            seeds: how many, where draws are random; None: as many as the study deems enough.
+        """
+        return [self.case(case)]
 
     @property
     @abstractmethod
@@ -89,7 +95,7 @@ class Study(ABC, Generic[C]):
         """Wires the loop of a case."""
 
     @abstractmethod
-    def metrics(self, config: C, log: Log) -> dict[str, Metric]:
+    def metrics(self, config: C, log: Log) -> tuple[Metric, ...]:
         """Measures a run; the paper's number and the target stand beside where there is one."""
 
     @abstractmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -73,7 +73,8 @@ def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> R
 
 def file_stem(config: CaseConfig) -> str:
     """Name of a run's files, without suffix."""
-    text = f"{config.case}_{config.controller}_seed{config.seed}"
+    parts = (config.case, config.controller, config.variant, f"seed{config.seed}")
+    text = "_".join(part for part in parts if part)
     return re.sub(r"[^A-Za-z0-9_.-]+", "-", text)
 
 
@@ -82,7 +83,7 @@ def _measured(
 ) -> Result:
     path = folder / f"{file_stem(config)}.mcap" if folder is not None else None
     if failure is not None:
-        return Result(config, {}, failure, wired.warnings, path)
+        return Result(config, (), failure, wired.warnings, path)
     drawn = study.figures(config, wired, log, folder) if folder is not None else []
     return Result(config, study.metrics(config, log), None, wired.warnings, path, tuple(drawn))
 
@@ -101,8 +102,3 @@ class _Reporter:
             self._next = now + 0.1
             self._progress(self._count / self._ticks)
 
-
-def seeds_of(config: CaseConfig, count: int) -> Iterator[CaseConfig]:
-    """The same configuration with `count` seeds, from its own seed on."""
-    for offset in range(count):
-        yield config.model_copy(update={"seed": config.seed + offset})

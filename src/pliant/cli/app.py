@@ -1,0 +1,157 @@
+"""The command line: `pliant run`, `study`, `log`, `bench`, `list`, `doctor`."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, ParamSpec
+
+import typer
+from rich.console import Console
+
+from pliant import __version__
+from pliant.errors import PliantError, RunFailedError
+
+app = typer.Typer(
+    name="pliant",
+    help="Contact control for torque-controlled robots: run a contact task, see it, measure it.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+_out = Console()
+_err = Console(stderr=True)
+
+P = ParamSpec("P")
+
+
+def _guarded(command: Callable[P, None]) -> Callable[P, None]:
+    """Exit code 2 for bad input, 1 when a run failed, 130 after Ctrl-C: one sentence, never a traceback."""
+
+    @functools.wraps(command)
+    def guarded(*args: P.args, **kwargs: P.kwargs) -> None:
+        try:
+            command(*args, **kwargs)
+        except RunFailedError as error:
+            _complain("failed", str(error))
+            raise typer.Exit(1) from None
+        except PliantError as error:
+            _complain("error", str(error))
+            raise typer.Exit(2) from None
+        except KeyboardInterrupt:
+            _complain("interrupted", "what was recorded until now is kept")
+            raise typer.Exit(130) from None
+
+    return guarded
+
+
+def _complain(kind: str, text: str) -> None:
+    _err.print(f"{kind}: {text}", style="red", markup=False, highlight=False, soft_wrap=True)
+
+
+Out = Annotated[Path | None, typer.Option("--out", help="Folder for logs, figures and summary.json.")]
+Sets = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Overrides one value, e.g. plant.period=0.002; repeatable.")]
+Controller = Annotated[str | None, typer.Option(help="Controller by name; see `pliant list controllers`.")]
+RobotOption = Annotated[str | None, typer.Option("--robot", metavar="NAME|FILE", help="Catalogue name, or a URDF or MJCF file.")]
+Seed = Annotated[int | None, typer.Option(min=0, help="Seed of every random draw.")]
+
+
+@app.command()
+@_guarded
+def run(
+    target: Annotated[str, typer.Argument(metavar="[STUDY|CONFIG.toml]", help="A study, or a TOML file with `study = ...` and any of its values.")] = "stack",
+    case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
+    controller: Controller = None,
+    robot: RobotOption = None,
+    seed: Seed = None,
+    out: Out = None,
+    set_: Sets = None,
+) -> None:
+    """Runs one case: a table, figures, a log and summary.json."""
+    from pliant.cli.run import run_command
+
+    overrides = {"controller": controller, "robot": robot, "seed": seed}
+    run_command(_out, _err, target, case, overrides, set_ or [], out)
+
+
+@app.command()
+@_guarded
+def study(
+    name: Annotated[str, typer.Argument(help="Study; see `pliant list studies`.")] = "stack",
+    case: Annotated[list[str] | None, typer.Option(help="Only this case; repeatable.")] = None,
+    seeds: Annotated[int | None, typer.Option(min=1, help="Seeds per case with random draws (default: the study's own).")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
+    out: Out = None,
+    set_: Sets = None,
+) -> None:
+    """Runs a whole study, control arms included: the tables and figures of a paper, beside the paper's numbers."""
+    from pliant.cli.study import study_command
+
+    study_command(_out, _err, name, case or [], seeds, jobs, set_ or [], out)
+
+
+@app.command()
+@_guarded
+def log(
+    file: Annotated[Path, typer.Argument(metavar="FILE.mcap", help="A log that pliant wrote.")],
+    plot: Annotated[bool, typer.Option("--plot", help="Draws the log into PNG files.")] = False,
+    out: Out = None,
+) -> None:
+    """Says what is in a log: channels, units, rates, metrics."""
+    from pliant.cli.log import log_command
+
+    log_command(_out, file, plot, out)
+
+
+@app.command()
+@_guarded
+def bench(
+    what: Annotated[str, typer.Argument(metavar="[controllers]", help="What to time.")] = "controllers",
+    json_: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Writes the numbers as JSON.")] = None,
+) -> None:
+    """Times one step: median, p90, p99 and maximum of the CPU time, in microseconds."""
+    from pliant.cli.bench import bench_command
+
+    bench_command(_out, what, json_)
+
+
+@app.command("list")
+@_guarded
+def list_(
+    what: Annotated[str | None, typer.Argument(metavar="[robots|controllers|studies]", help="What to list; nothing: all.")] = None,
+) -> None:
+    """Lists robots, controllers and studies."""
+    from pliant.cli.listing import list_command
+
+    list_command(_out, what)
+
+
+@app.command()
+@_guarded
+def doctor(
+    config: Annotated[Path | None, typer.Option("--config", metavar="CONFIG.toml", help="A configuration to check for unsafe gains.")] = None,
+) -> None:
+    """Checks this installation; with --config, whether a configuration is safe."""
+    from pliant.cli.doctor import doctor_command
+
+    doctor_command(_out, config)
+
+
+def _version(show: bool) -> None:
+    if show:
+        _out.print(f"pliant {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Prints the version.")] = False,
+) -> None:
+    pass
+
+
+def main() -> None:
+    """Entry point."""
+    app()

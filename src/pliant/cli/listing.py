@@ -1,0 +1,55 @@
+"""`pliant list`: robots, controllers and studies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from rich.console import Console
+from rich.table import Table
+
+from pliant.errors import ConfigError, options
+from pliant.robots import CATALOGUE, is_available
+from pliant.studies.registry import get_study, study_names
+
+
+def list_command(console: Console, what: str | None) -> None:
+    """Prints one of the lists, or all. Raises ConfigError for another name."""
+    if what is not None and what not in _LISTS:
+        raise ConfigError(f"there is no list of {what!r}; {options(_LISTS, what)}")
+    for name, table in _LISTS.items():
+        if what in (None, name):
+            console.print(table())
+
+
+def _robots() -> Table:
+    table = Table("robot", "joints from", "what it is", title="robots", title_justify="left")
+    for entry in CATALOGUE.values():
+        origin = "pliant" if entry.own else "example-robot-data"
+        missing = "" if is_available(entry) else " (not installed: pip install 'pliant\\[robots]')"
+        table.add_row(entry.name, origin, entry.description + missing)
+    table.add_row("FILE", "you", "any fixed-base URDF or MJCF with revolute and prismatic joints")
+    return table
+
+
+def _controllers() -> Table:
+    table = Table("controller", "study", title="controllers", title_justify="left")
+    found: dict[str, list[str]] = {}
+    for name in study_names():
+        for controller in get_study(name).controllers:
+            found.setdefault(controller, []).append(name)
+    for controller, studies in found.items():
+        table.add_row(controller, ", ".join(studies))
+    return table
+
+
+def _studies() -> Table:
+    table = Table("study", "case", "controller", title="studies", title_justify="left")
+    for name in study_names():
+        study = get_study(name)
+        for index, config in enumerate(study.cases.values()):
+            table.add_row(name if index == 0 else "", config.case, config.controller)
+        table.add_section()
+    return table
+
+
+_LISTS: Mapping[str, Callable[[], Table]] = {"robots": _robots, "controllers": _controllers, "studies": _studies}

@@ -1,0 +1,74 @@
+"""`pliant run`: one case, with a progress bar, a table, figures, a log and summary.json."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from pliant.cli.progress import progress_bar
+from pliant.errors import ConfigError, RunFailedError, options
+from pliant.studies.base import CaseConfig, Study
+from pliant.studies.config import merged, parse_assignments, read_toml
+from pliant.studies.registry import get_study, study_names
+from pliant.studies.runner import run_case
+from pliant.telemetry.output import output_folder
+from pliant.cli.report import print_result, save_summary
+
+
+def run_command(
+    console: Console,
+    complain: Console,
+    target: str,
+    case: str | None,
+    overrides: Mapping[str, Any],
+    assignments: Sequence[str],
+    out: Path | None,
+) -> None:
+    """Runs one case.
+
+    Raises:
+        PliantError: bad input; nothing was run.
+        RunFailedError: the run stopped early; what was recorded is kept.
+    """
+    study, config = resolve(target, case, overrides, assignments)
+    folder = output_folder(out or default_folder(study, config.case))
+    experiment = study.build(config)
+    for warning in experiment.warnings:
+        complain.print(f"warning: {warning}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+    with progress_bar(complain, f"{study.name} {config.case} · {config.controller}") as progress:
+        result = run_case(study, config, folder, progress=progress, experiment=experiment)
+    summary = save_summary(study, [result], folder)
+    if result.failure is not None:
+        raise RunFailedError(f"{result.failure}; the log until then is {result.log}")
+    print_result(console, study, result)
+    console.print(f"\nlog      {result.log}\nsummary  {summary}", markup=False, highlight=False, soft_wrap=True)
+    for figure in result.figures:
+        console.print(f"figure   {figure}", markup=False, highlight=False, soft_wrap=True)
+
+
+def resolve(
+    target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]
+) -> tuple[Study[Any], CaseConfig]:
+    """The study and the checked configuration that a user means: case defaults, then the TOML file, then the options."""
+    values: dict[str, Any] = {}
+    if target.endswith(".toml"):
+        values = read_toml(Path(target))
+        name = values.pop("study", None)
+        if name is None:
+            raise ConfigError(f"{target} needs a key 'study'; {options(study_names())}")
+        study = get_study(str(name))
+    else:
+        study = get_study(target)
+    from_file = values.pop("case", None)
+    config = study.case(case or from_file or next(iter(study.cases)))
+    config = merged(config, values)
+    config = merged(config, {key: value for key, value in overrides.items() if value is not None})
+    return study, merged(config, parse_assignments(assignments))
+
+
+def default_folder(study: Study[Any], case: str) -> Path:
+    """Where a run writes if nobody says."""
+    return Path("pliant-out") / study.name / case

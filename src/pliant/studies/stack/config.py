@@ -1,0 +1,157 @@
+"""Typed configuration of the stack study, and its cases.
+
+Source of the task: [Stack] Tiseo et al. 2020, sec. III and Table I. What the paper leaves open (period, ramp, wall, pushes) is
+here, with the value chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from pliant.controllers.config import OperationalSpaceConfig
+from pliant.controllers.config import StackConfig as StackParameters
+from pliant.controllers.presets import SOFT_STACK, STIFF_STACK, TABLE_I_ROBOT, TABLE_I_SIMULATION
+from pliant.controllers.registry import CONTROLLERS
+from pliant.entries import ControllerConfig, ControllerEntry, find_entry
+from pliant.errors import ConfigError
+from pliant.studies.base import CaseConfig
+from pliant.studies.config import Config, merged
+
+PathKind = Literal["figure8", "line", "stretch", "hold"]
+
+
+class Path(Config):
+    """What the tool does. It starts from rest within `ramp`."""
+
+    kind: PathKind = Field(default="figure8", description="figure8: x 0.1 m, z 0.2 m; line: along x; stretch: out along −y until the elbow is straight, and back; hold: nothing")
+    period: float = Field(default=4.0, gt=0.0, description="of the figure-8", json_schema_extra={"unit": "s"})
+    amplitude: float = Field(default=0.5, gt=0.0, description="of the line", json_schema_extra={"unit": "m"})
+    peak_speed: float = Field(default=0.7, gt=0.0, description="of the line", json_schema_extra={"unit": "m/s"})
+    ramp: float = Field(default=2.0, ge=0.0, description="time in which the motion starts from rest", json_schema_extra={"unit": "s"})
+    method: Literal["mink", "aico"] = Field(default="mink", description="inverse kinematics for the posture: quadratic programs, or one-step approximate inference")
+
+
+class Joints(Config):
+    """How the simulated joints behave."""
+
+    friction: float = Field(default=0.0, ge=0.0, description="dry friction of each joint", json_schema_extra={"unit": "N·m"})
+    damping: float = Field(default=0.0, ge=0.0, description="of each joint", json_schema_extra={"unit": "N·m s/rad"})
+    compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(default="none", description="what the robot compensates by itself")
+    velocity_filter: float = Field(default=1.0, gt=0.0, le=1.0, description="share of a new sample in the low-passed joint velocity; 1: no filter")
+
+
+class Wall(Config):
+    """A wall in the tool's way that nobody knows of."""
+
+    x: float = Field(default=0.07, description="where it stops the tool", json_schema_extra={"unit": "m"})
+    stiffness: float = Field(default=1e4, gt=0.0, json_schema_extra={"unit": "N/m"})
+    damping: float = Field(default=1e2, ge=0.0, json_schema_extra={"unit": "N s/m"})
+    friction: float = Field(default=0.1, ge=0.0, json_schema_extra={"unit": "1"})
+
+
+class Pushes(Config):
+    """Random pushes on a frame, one after the other."""
+
+    frame: str = Field(default="elbow")
+    force: tuple[float, float] = Field(default=(10.0, 30.0), description="least and most", json_schema_extra={"unit": "N"})
+    duration: tuple[float, float] = Field(default=(0.2, 0.6), json_schema_extra={"unit": "s"})
+    gap: tuple[float, float] = Field(default=(0.1, 0.4), json_schema_extra={"unit": "s"})
+
+
+class Retuning(Config):
+    """Random changes of every gain and force bound while the robot moves."""
+
+    rate: float = Field(default=4.0, gt=0.0, description="changes per second", json_schema_extra={"unit": "Hz"})
+    factor: tuple[float, float] = Field(default=(0.1, 2.0), description="range of the factor on K_0 and F_max", json_schema_extra={"unit": "1"})
+
+
+PRESETS: Mapping[str, ControllerConfig] = {
+    "stiff": STIFF_STACK,
+    "soft": SOFT_STACK,
+    "table-1-simulation": TABLE_I_SIMULATION,
+    "table-1-robot": TABLE_I_ROBOT,
+}
+"""name → parameters of the two tasks; "stiff" and "soft" are pliant's own for the simulated and the hardware-like robot"""
+
+
+class StackConfig(CaseConfig):
+    """One run of the stack of passive task-space controllers."""
+
+    controller: str = Field(default="stack", description="name of the controller; see `pliant list controllers`")
+    robot: str = Field(default="lwr4", description="catalogue name, or path of a URDF or MJCF file")
+    duration: float = Field(default=12.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    period: float = Field(default=1e-3, gt=0.0, description="control period, a whole multiple of the physics step", json_schema_extra={"unit": "s"})
+    physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
+    path: Path = Path()
+    joints: Joints = Joints()
+    preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(default="stiff", description="parameters of the stack that `control` starts from")
+    control: dict[str, Any] = Field(default={}, description="changes to the controller's parameters, e.g. control.tasks.ee.translation.stiffness=8000")
+    torque_step: float | None = Field(default=0.15, gt=0.0, description="largest change of a joint's torque per period, as a share of its limit; none: unbounded", json_schema_extra={"unit": "1"})
+    wall: Wall | None = None
+    pushes: Pushes | None = None
+    retuning: Retuning | None = None
+
+    @property
+    def settled(self) -> float:
+        """s from which metrics count: one second after the ramp."""
+        return self.path.ramp + 1.0
+
+    @property
+    def entry(self) -> ControllerEntry[Any]:
+        """The chosen controller."""
+        return find_entry(CONTROLLERS, self.controller)
+
+    def parameters(self) -> ControllerConfig:
+        """The controller's parameters: preset, then `control`. Raises ConfigError for an unknown key or a bad value."""
+        base = self.entry.default
+        if isinstance(base, StackParameters):
+            base = PRESETS[self.preset].model_copy(update={"law": base.law})
+        elif isinstance(base, OperationalSpaceConfig) and self.joints.compensation != "none":
+            base = base.model_copy(update={"compensation": "none" if "coriolis" in self.joints.compensation else "coriolis"})
+        return merged(base, self.control)
+
+    def frames(self) -> tuple[str, str]:
+        """Tool and elbow frame: those of the first two tasks."""
+        preset = PRESETS[self.preset]
+        assert isinstance(preset, StackParameters)
+        chosen = self.parameters()
+        tasks = chosen.frame_tasks() if isinstance(chosen, StackParameters) else preset.frame_tasks()
+        if len(tasks) != 2:
+            raise ConfigError(f"this study drives two frames, a tool and an elbow; control.tasks names {len(tasks)}")
+        return tasks[0].frame, tasks[1].frame
+
+    @model_validator(mode="after")
+    def _has_good_parameters(self) -> Self:
+        self.frames()
+        return self
+
+
+_GAZEBO = {
+    "joints": Joints(friction=10.0, damping=1.0, compensation="gravity", velocity_filter=0.2),
+    # 10 N·m of dry friction in every joint want more than the plain plant does
+    "control": {"tasks": {"ee": {"translation": {"stiffness": 20000.0, "force_max": 200.0}}}},
+}
+_HARDWARE = Joints(friction=0.5, damping=0.5, compensation="gravity+coriolis")
+_HARDWARE_LOOP = {"period": 3e-3, "joints": _HARDWARE, "preset": "soft"}
+
+CASES: Mapping[str, StackConfig] = {
+    config.case: config
+    for config in (
+        StackConfig(case="figure8-wall", wall=Wall(), **_GAZEBO),
+        StackConfig(case="figure8-plain"),
+        StackConfig(case="figure8-gazebo", **_GAZEBO),
+        StackConfig(case="figure8-hardware", **_HARDWARE_LOOP),
+        StackConfig(case="figure8-pushed", **_HARDWARE_LOOP, pushes=Pushes()),
+        StackConfig(case="line-hardware", path=Path(kind="line"), **_HARDWARE_LOOP),
+        StackConfig(case="line-pushed", path=Path(kind="line"), pushes=Pushes(), **_HARDWARE_LOOP),
+        StackConfig(case="line-slow", path=Path(kind="line", peak_speed=0.4), **_HARDWARE_LOOP),
+        StackConfig(case="rest-plain", path=Path(kind="hold"), pushes=Pushes(frame="flange", gap=(0.5, 0.6)), duration=10.0),
+        StackConfig(case="singular", path=Path(kind="stretch"), **_HARDWARE_LOOP),
+        StackConfig(case="calibration", retuning=Retuning(), **_GAZEBO),
+        StackConfig(case="balance", **_GAZEBO),
+    )
+}
+"""name → configuration; the first is what `pliant run` does"""
