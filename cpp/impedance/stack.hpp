@@ -115,6 +115,7 @@ class Stack {
       if (first) {
         if (in.retune) p = tuned(task, in.retune, i);
         start(s, task.shape, p, error[i], floor, config_);
+        update_rate(config_, s, error[i], floor);
       } else {
         step_error(task, p, s, in.retune, i, error[i], floor, restart);
       }

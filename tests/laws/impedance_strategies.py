@@ -31,7 +31,9 @@ def profiles(draw: st.DrawFn, axes: int = 1) -> ForceProfile:
     return ForceProfile.of(tuning, draw(SHAPES))
 
 
-def profile_of(K_0: float, F_max: float, x_b: float, x_0: float | None = None, shape: Shape = Shape.EXPONENTIAL) -> ForceProfile:
+def profile_of(
+    K_0: float, F_max: float, x_b: float, x_0: float | None = None, shape: Shape = Shape.EXPONENTIAL
+) -> ForceProfile:
     """A profile of one axis."""
     bend = None if x_0 is None else np.array([x_0])
     return ForceProfile.of(ImpedanceTuning(np.array([K_0]), np.array([F_max]), np.array([x_b]), bend), shape)
@@ -63,8 +65,7 @@ def run_mass(
     noise: float = 0.0,
     settings: PhaseSettings | None = None,
 ) -> MassRun:
-    """A mass pulled by one impedance axis, the force held over each period, the motion exact in between (damping explicit in
-    ten substeps)."""
+    """A mass pulled by one impedance axis; the force is held over each period, the motion in between runs in ten steps."""
     attractor = Attractor(period, np.array([5e-4]), law, settings or PhaseSettings())
     rng = np.random.default_rng(3)
     x, v, state = -start, 0.0, None

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.laws.impedance_strategies import profile_of, profiles, run_mass
 
 from pliant.controllers.attractor import Law, PhaseSettings, converging_force
 from pliant.controllers.profiles import ForceProfile, Shape
-from tests.laws.impedance_strategies import profile_of, profiles, run_mass
 
 SATURATING = profile_of(2500.0, 100.0, 0.06, 0.03)
 STIFFENING = profile_of(1000.0, 150.0, 0.025, shape=Shape.TANH)
@@ -25,7 +25,9 @@ def back(law: Law, profile: ForceProfile, share: np.ndarray | float, x_m: float)
 
 
 @given(profiles(), st.floats(0.01, 3.0), st.sampled_from([-1.0, 1.0]))
-def test_capped_force_is_odd_and_within_the_profile_and_force_max(profile: ForceProfile, reach: float, sign: float) -> None:
+def test_capped_force_is_odd_and_within_the_profile_and_force_max(
+    profile: ForceProfile, reach: float, sign: float
+) -> None:
     x_m = sign * reach * float(profile.range[0])
     share = np.linspace(0.0, 1.0, 401)
     h = back(Law.CAPPED, profile, share, x_m)
@@ -140,7 +142,9 @@ def test_the_printed_stack_law_never_settles() -> None:
 
 
 def test_a_moving_target_is_followed_without_damping() -> None:
-    run = run_mass(profile_of(15000.0, 150.0, 0.02, 0.007), start=0.0, seconds=6.0, target=lambda t: 0.1 * np.sin(3.0 * t))
+    run = run_mass(
+        profile_of(15000.0, 150.0, 0.02, 0.007), start=0.0, seconds=6.0, target=lambda t: 0.1 * np.sin(3.0 * t)
+    )
     assert np.abs(run.error[1000:]).max() < 2.5e-3  # m ẍ_d/K_0 = 0.1 mm, plus the damping's own lag
 
 
@@ -162,7 +166,9 @@ def test_without_the_time_out_it_parks_halfway() -> None:
 @pytest.mark.parametrize("damping", [0.0, 20.0, 200.0, 2000.0])
 @pytest.mark.parametrize("load", [0.0, 40.0])
 def test_force_never_stays_away_while_the_error_is_large(damping: float, load: float) -> None:
-    run = run_mass(SATURATING, start=0.05, damping=damping, load=-load, seconds=3.0, target=lambda t: 0.03 * np.sin(2 * t))
+    run = run_mass(
+        SATURATING, start=0.05, damping=damping, load=-load, seconds=3.0, target=lambda t: 0.03 * np.sin(2 * t)
+    )
     large = np.abs(run.error) > 2e-3
     idle = large & (np.abs(run.force) < 0.01 * SATURATING.magnitude(np.abs(run.error)[:, None])[:, 0])
     idle &= np.abs(run.rate) < run.threshold
@@ -171,7 +177,7 @@ def test_force_never_stays_away_while_the_error_is_large(damping: float, load: f
 
 
 def test_noise_does_not_make_the_phase_chatter() -> None:
-    noisy = dict(start=0.0, load=-30.0, damping=15.0, noise=3e-5, seconds=3.0)
+    noisy = {"start": 0.0, "load": -30.0, "damping": 15.0, "noise": 3e-5, "seconds": 3.0}
     adaptive = run_mass(SATURATING, **noisy)
     fixed = run_mass(SATURATING, **noisy, settings=PhaseSettings(noise_time=1e9))
     switches = [np.abs(np.diff(run.converging[1000:])).sum() / 2.0 for run in (adaptive, fixed)]

@@ -1,0 +1,156 @@
+"""The compiled impedance core against its Python twin, over random sequences of poses, targets and tunings."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.twins.impedance_twin import TwinTask
+
+from pliant import _impedance
+from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.energy_ledger import Diagnostics, channel_table
+from pliant.controllers.profiles import ForceProfile, Shape
+from pliant.signals import ImpedanceTuning
+from pliant.spatial import Array, exp3
+
+PERIOD = 1e-3
+SETTINGS = PhaseSettings()
+JOINTS = 7
+
+
+def core(law: Law, shapes: list[Shape], axes: list[int], limit: float = np.inf) -> _impedance.Stack:
+    tasks = [
+        (k, shape.value, SETTINGS.rate_floor, SETTINGS.rate_floor_angular, [True] * JOINTS)
+        for k, shape in zip(axes, shapes, strict=True)
+    ]
+    gains = {"rate_gain": SETTINGS.rate_gain(PERIOD), "noise_gain": SETTINGS.noise_gain(PERIOD)}
+    limits = np.full(JOINTS, limit)
+    return _impedance.Stack(
+        law=law.value, period=PERIOD, hold_limit=SETTINGS.hold_limit, torque_limit=limits, tasks=tasks, **gains
+    )
+
+
+def packed(profile: ForceProfile) -> Array:
+    return np.concatenate([profile.stiffness, profile.force_max, profile.range, profile.linear_range])
+
+
+def random_tuning(rng: np.random.Generator, axes: int) -> ImpedanceTuning:
+    stiffness = 10.0 ** rng.uniform(1.0, 4.0, axes)
+    reach = rng.uniform(0.01, 0.1, axes) if rng.random() < 0.7 else rng.uniform(0.1, 0.5, axes)
+    if rng.random() < 0.5:
+        return ImpedanceTuning(stiffness, stiffness * reach * rng.uniform(0.05, 3.0, axes), reach)
+    bend = reach * rng.uniform(0.0, 0.95, axes)
+    return ImpedanceTuning(stiffness, stiffness * bend * rng.uniform(1.0, 3.0, axes) + 0.1, reach, bend)
+
+
+def wander(rng: np.random.Generator, steps: int) -> Array:
+    """(steps, 6) smooth random motion that turns often, m and rad, with noise now and then."""
+    t = PERIOD * np.arange(steps)[:, None]
+    amplitude, speed = rng.uniform(0.01, 0.15, (5, 6)), rng.uniform(1.0, 40.0, (5, 6))
+    path = sum(a * np.sin(w * t + 6.0 * rng.random(6)) for a, w in zip(amplitude, speed, strict=True)) / 5.0
+    return path + rng.choice([0.0, 0.0, 1e-5, 1e-4]) * rng.standard_normal((steps, 6))
+
+
+@pytest.mark.parametrize("law", list(Law))
+@pytest.mark.parametrize("seed", range(4))
+def test_core_equals_its_twin(law: Law, seed: int) -> None:
+    rng = np.random.default_rng(100 + seed)
+    axes, shapes = [6, 3], [Shape(s) for s in rng.choice(list(Shape), 2)]
+    stack = core(law, shapes, axes)
+    twins = [TwinTask(law, PERIOD, k, SETTINGS) for k in axes]
+    table = channel_table(JOINTS, [("a", 6), ("b", 3)])
+    memory, out = np.zeros(stack.state_size), np.full(stack.output_size, np.nan)
+    steps = 400
+    got: dict[str, list[object]] = {}
+    wanted: dict[str, list[object]] = {}
+    actual, desired = [wander(rng, steps) for _ in axes], [wander(rng, steps) for _ in axes]
+    tunings = [random_tuning(rng, k) for k in axes]
+    J = np.asfortranarray(rng.standard_normal((6, JOINTS)))
+    for step in range(steps):
+        changed = [i for i in range(2) if step == 0 or rng.random() < 0.02]
+        for i in changed:
+            tunings[i] = random_tuning(rng, axes[i])
+        forms = [ForceProfile.of(tuning, shape) for tuning, shape in zip(tunings, shapes, strict=True)]
+        profiles = [forms[i] if i in changed else twins[i].profile for i in range(2)]
+        poses = [(actual[i][step, :3], exp3(actual[i][step, 3:])) for i in range(2)]
+        targets = [(desired[i][step, :3], exp3(desired[i][step, 3:])) for i in range(2)]
+        retune = tuple((i, packed(forms[i])) for i in changed)
+        out[:] = np.nan
+        code = stack.step(memory, out, np.zeros(JOINTS), J, sum(poses, ()), sum(targets, ()), None, retune or None)
+        assert code == 0
+        assert np.isfinite(out).all()
+        channels = Diagnostics(table, out.copy())
+        torque = np.zeros(JOINTS)
+        for label, twin, pose, target, profile in zip("ab", twins, poses, targets, profiles, strict=True):
+            assert profile is not None
+            expected = twin.step(pose, target, profile)
+            for name, value in expected.items():
+                got.setdefault(f"{label}/{name}", []).append(channels[f"{label}/{name}"])
+                wanted.setdefault(f"{label}/{name}", []).append(value)
+            wrench = np.asarray(expected["wrench"])
+            torque += J[:3].T @ wrench[:3] + J[3:].T @ (wrench[3:] + np.cross(pose[0], wrench[:3]))
+        got.setdefault("torque", []).append(out[:JOINTS].copy())
+        wanted.setdefault("torque", []).append(torque)
+    for name, values in wanted.items():
+        scale = max(1.0, float(np.abs(values).max()))
+        np.testing.assert_allclose(np.array(got[name]), np.array(values), rtol=0.0, atol=2e-9 * scale, err_msg=name)
+    assert np.array(wanted["a/phase"]).any() == (law is not Law.SPRING)
+
+
+def test_clamped_torque_and_its_energy() -> None:
+    stack = core(Law.SPRING, [Shape.EXPONENTIAL], [3], limit=1.0)
+    memory, out = np.zeros(stack.state_size), np.zeros(stack.output_size)
+    J = np.zeros((6, JOINTS), order="F")
+    J[0, 0] = 1.0
+    tuning = (0, np.array([1000.0] * 3 + [50.0] * 3 + [0.1] * 3 + [0.05] * 3))
+    energy = 0.0
+    for step in range(5):
+        q = np.array([0.01 * step, 0, 0, 0, 0, 0, 0.0])
+        stack.step(
+            memory, out, q, J, (q[:3], None), (np.array([0.06, 0, 0]), None), None, (tuning,) if step == 0 else None
+        )
+        assert out[0] == 1.0
+        assert out[2 * JOINTS + 5] == pytest.approx(energy)
+        energy += out[JOINTS] * 0.01
+    assert energy > 0.1
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"q": np.zeros(6)}, "q must have 7 entries, got 6"),
+        ({"J": np.zeros((6, 7))}, "column-major"),
+        ({"actual": (np.zeros(3),)}, "actual must have 2 entries, got 1"),
+        ({"desired": (np.zeros(4), None)}, "a position must have 3 entries, got 4"),
+        ({"bias": np.zeros(3)}, "bias must have 7 entries, got 3"),
+        ({"retune": ((0, np.zeros(3)),)}, "a tuning must have 12 entries, got 3"),
+        ({"retune": ((1, np.zeros(12)),)}, "there is no task 1"),
+        ({"memory": np.zeros(3)}, "memory must have"),
+        ({"out": np.zeros(3)}, "out must have"),
+    ],
+)
+def test_wrong_sizes_are_refused(change: dict[str, object], message: str) -> None:
+    stack = core(Law.CAPPED, [Shape.TANH], [3])
+    arguments: dict[str, object] = {
+        "memory": np.zeros(stack.state_size),
+        "out": np.zeros(stack.output_size),
+        "q": np.zeros(7),
+        "J": np.zeros((6, 7), order="F"),
+        "actual": (np.zeros(3), None),
+        "desired": (np.zeros(3), None),
+        "bias": None,
+        "retune": None,
+    }
+    with pytest.raises(ValueError, match=message):
+        stack.step(**(arguments | change))
+
+
+@pytest.mark.parametrize(("place", "code"), [("q", 1), ("actual", 100), ("desired", 200)])
+def test_what_is_not_finite_is_named_and_changes_nothing(place: str, code: int) -> None:
+    stack = core(Law.CAPPED, [Shape.TANH], [3])
+    memory, out = np.zeros(stack.state_size), np.full(stack.output_size, 7.0)
+    q, pose, target = np.zeros(7), np.zeros(3), np.zeros(3)
+    {"q": q, "actual": pose, "desired": target}[place][1] = np.nan
+    assert stack.step(memory, out, q, np.zeros((6, 7), order="F"), (pose, None), (target, None), None, None) == code
+    assert not memory.any()
+    assert (out == 7.0).all()
