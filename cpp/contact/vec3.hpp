@@ -23,7 +23,6 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 inline Vec3 load(const double* p) { return {p[0], p[1], p[2]}; }
 inline void store(const Vec3& a, double* p) { p[0] = a.x, p[1] = a.y, p[2] = a.z; }
-inline bool finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
 // A view of a row-major 3×3 rotation R_world_local, as MuJoCo stores it.
 struct Rotation {

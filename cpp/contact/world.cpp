@@ -5,7 +5,9 @@
 namespace pliant::contact {
 namespace {
 
-constexpr double kFastest = 1e5;  // m/s or rad/s; anything above is a simulation that has blown up
+// Anything above is a simulation that has blown up. MuJoCo has limits of its own, far higher, and writes a file when it meets them.
+constexpr double kFastest = 1e4;    // m/s or rad/s
+constexpr double kStrongest = 1e7;  // N
 
 Shape shape_of(const Views& v, int geom) {
   return {static_cast<ShapeType>(v.geom_type[geom]), load(v.geom_size + 3 * geom), load(v.geom_position + 3 * geom),
@@ -62,7 +64,7 @@ bool World::evaluate(const Views& v, double dt, const double* push, double* bris
       } else {
         reset(bristle, pair.material);
       }
-      sound = sound && finite(force) && std::isfinite(t.penetration);
+      sound = sound && norm(force) < kStrongest && std::isfinite(t.penetration);  // false for NaN
       store(force, out.force + 3 * slot);
       store(t.point, out.point + 3 * slot);
       out.penetration[slot] = t.penetration;
@@ -73,6 +75,7 @@ bool World::evaluate(const Views& v, double dt, const double* push, double* bris
 
 int World::advance(const Views& views, HalfStep step1, HalfStep step2, const void* model, void* data, int count, double dt,
                    const double* push, double* bristles, const Output& out) const {
+  if (!velocities_sound(views)) return 0;
   for (int done = 0; done < count; ++done) {
     step1(model, data);
     if (!evaluate(views, dt, push, bristles, out)) return done;

@@ -48,10 +48,10 @@ class World {
   const std::vector<Pair>& pairs() const { return pairs_; }
 
   // One evaluation: writes push plus contact forces to body_force. With dt = 0 the bristles keep their state.
-  // Returns false if a force is not finite.
+  // Returns false if a force is absurd or not finite.
   bool evaluate(const Views& views, double dt, const double* push, double* bristles, const Output& out) const;
 
-  // `count` steps of dt. Returns how many were completed: fewer than `count` if a force or a velocity is not finite.
+  // `count` steps of dt. Returns how many were completed: fewer than `count` if a force or a velocity is absurd or not finite.
   int advance(const Views& views, HalfStep step1, HalfStep step2, const void* model, void* data, int count, double dt,
               const double* push, double* bristles, const Output& out) const;
 

@@ -4,16 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, RunFailedError
+from pliant.interfaces import Plant
 from pliant.robot import Robot
 from pliant.signals import Command
-from pliant.simulation import Ball, Box, JointEffects, LinkCapsule, MujocoPlant, Plane, Scene, Surface, floor
+from pliant.simulation import (
+    Ball,
+    Box,
+    Imperfections,
+    ImperfectPlant,
+    JointEffects,
+    LinkCapsule,
+    MujocoPlant,
+    Plane,
+    Scene,
+    Surface,
+    floor,
+)
 from pliant.simulation.contact_pairs import pairs_of
 from pliant.simulation.explicit_contact import (
     ContactMaterial,
@@ -22,6 +39,7 @@ from pliant.simulation.explicit_contact import (
     ExplicitContacts,
     explicit_contacts,
 )
+from pliant.spatial import rpy
 
 G = 9.81  # m/s²
 RIGID = Surface(stiffness=1e6, damping=1e4, friction=0.5, friction_moving=0.3)
@@ -274,9 +292,12 @@ def test_it_agrees_with_mujocos_own_contact_where_only_the_normal_counts(leg3: R
 # ---------------------------------------------------------------------- in the plant
 
 
-def leg_on_floor(leg3: Robot, surface: Surface, dt: float = FINE) -> tuple[MujocoPlant, np.ndarray]:
+def leg_on_floor(
+    leg3: Robot, surface: Surface, dt: float = FINE, joints: JointEffects | None = None
+) -> tuple[MujocoPlant, np.ndarray]:
     x, _ = leg3.placement(leg3.home, "foot")
-    return MujocoPlant(leg3, Scene((floor(x[2] - 0.02, surface),), contact="explicit"), physics_step=dt), x
+    scene = Scene((floor(x[2] - 0.02, surface),), contact="explicit")
+    return MujocoPlant(leg3, scene, physics_step=dt, joints=joints), x
 
 
 @dataclass
@@ -289,7 +310,7 @@ class Log:
     """(k, 3) τ + Jᵀ W − g, N·m: what is left to accelerate the joints"""
 
 
-def press_and_slide(plant: MujocoPlant, robot: Robot, x: np.ndarray, seconds: float, speed: float) -> Log:
+def press_and_slide(plant: Plant[Any], robot: Robot, x: np.ndarray, seconds: float, speed: float) -> Log:
     """Presses 40 N while a damped spring pulls the foot along x."""
     data, fid = robot.model.createData(), robot.frame_id("foot")
     measurement, world = plant.init()
@@ -303,7 +324,9 @@ def press_and_slide(plant: MujocoPlant, robot: Robot, x: np.ndarray, seconds: fl
         pull[2] = -40.0
         torque = gravity + J[:3].T @ pull
         measurement, world = plant.step(Command(measurement.time, torque, np.zeros(3)), world)
-        wrenches.append(plant.truth(world).wrenches["foot"])
+        truth = plant.truth(world)
+        assert truth is not None
+        wrenches.append(truth.wrenches["foot"])
         residuals.append(torque + J.T @ wrenches[-1] - gravity)
     return Log(np.array(wrenches), np.array(residuals))
 
@@ -316,6 +339,27 @@ def test_the_foot_wrench_is_the_force_that_balances_the_robot(leg3: Robot) -> No
     assert wrench[2] == pytest.approx(40.0, abs=0.1)
     # The force acts at the sole, a radius (less the penetration) below the frame's origin.
     assert np.allclose(wrench[3:], np.cross([0.0, 0.0, -0.02], wrench[:3]), atol=2e-3)
+
+
+def test_what_lies_on_the_floor_carries_what_presses_on_it(leg3: Robot) -> None:
+    foot, _ = leg3.placement(leg3.home, "foot")
+    top = float(foot[2]) - 0.02
+    box = Box("box", (0.2, 0.2, 0.06), (float(foot[0]), 0.0, top - 0.03), 2.0, surface=RIGID)
+    scene = Scene((box, floor(top - 0.06, RIGID)), contact="explicit")
+    plant = MujocoPlant(leg3, scene, joints=JointEffects(damping=5.0, compensation="gravity"))
+    J = pin.computeFrameJacobian(
+        leg3.model, leg3.model.createData(), leg3.home, leg3.frame_id("foot"), pin.LOCAL_WORLD_ALIGNED
+    )
+    _, world = plant.init()
+    for _ in range(400):
+        _, world = plant.step(Command(0.0, J[:3].T @ np.array([0.0, 0.0, -20.0]), np.zeros(3)), world)
+    contacts, state = plant.explicit, world.contacts
+    assert contacts is not None
+    assert state is not None
+    assert np.allclose(contacts.force_on(state, "box"), [0.0, 0.0, 2.0 * G], atol=0.01)
+    pressed = plant.truth(world).wrenches["foot"][:3]
+    assert pressed[2] > 10.0
+    assert np.allclose(contacts.force_on(state, "floor"), -pressed - [0.0, 0.0, 2.0 * G], atol=0.01)
 
 
 def test_a_stiff_floor_holds_a_light_foot_without_hopping_while_it_slides(leg3: Robot) -> None:
@@ -362,6 +406,47 @@ def test_the_shank_touches_a_box_and_the_foot_feels_nothing(leg3: Robot) -> None
     assert "shank" in world.touching
 
 
+@settings(max_examples=12)
+@given(
+    stiffness=st.floats(2.5, 6.0).map(lambda power: 10.0**power),
+    friction=st.floats(0.0, 1.0),
+    roll=st.floats(-20.0, 20.0),
+    pitch=st.floats(-20.0, 20.0),
+    speed=st.floats(-0.2, 0.2),
+)
+def test_any_floor_can_be_pressed_and_stroked(
+    leg3: Robot, stiffness: float, friction: float, roll: float, pitch: float, speed: float
+) -> None:
+    """Forces stay those of a contact: they push, within the cone, and no more than an impact allows."""
+    x, _ = leg3.placement(leg3.home, "foot")
+    normal = rpy(np.deg2rad(roll), np.deg2rad(pitch), 0.0)[:, 2]
+    surface = Surface(stiffness, 1e-2 * stiffness, friction, 0.6 * friction)
+    plane = Plane("floor", tuple(x - 0.025 * normal), tuple(normal), surface)
+    plant = MujocoPlant(leg3, Scene((plane,), contact="explicit"))
+    forces = press_and_slide(plant, leg3, x, 0.3, speed).wrench[:, :3]
+    pressing = forces @ normal
+    sideways = np.linalg.norm(forces - np.outer(pressing, normal), axis=1)
+    assert pressing.min() >= 0.0
+    assert np.all(sideways <= friction * pressing + 1e-9)
+    assert pressing.max() < 300.0
+
+
+def test_the_same_run_gives_the_same_forces_bit_for_bit(leg3: Robot) -> None:
+    first, second = (
+        press_and_slide(leg_on_floor(leg3, RIGID)[0], leg3, np.array([0.034, 0.0, 0.06]), 0.1, 0.05) for _ in "ab"
+    )
+    assert np.array_equal(first.wrench, second.wrench)
+
+
+def test_weak_and_slow_actuators_on_damped_joints_hold_a_force_on_a_stiff_floor(leg3: Robot) -> None:
+    inner, x = leg_on_floor(leg3, RIGID, joints=JointEffects(damping=11.46))
+    held = pin.computeGeneralizedGravity(leg3.model, leg3.model.createData(), leg3.home)
+    plant = ImperfectPlant(inner, Imperfections.p0_experiment4(), holding_torque=held)
+    log = press_and_slide(plant, leg3, x, 1.0, 0.0)
+    assert log.wrench[-1, 2] == pytest.approx(40.0, abs=0.5)
+    assert np.ptp(log.wrench[-100:, 2]) < 0.05
+
+
 # ---------------------------------------------------------------------- failing
 
 
@@ -381,12 +466,14 @@ def test_a_step_too_long_for_the_foot_names_the_longest_one(leg3: Robot) -> None
 
 
 @pytest.mark.parametrize("poison", [np.nan, 1e300])
-def test_a_simulation_that_diverges_says_so(poison: float) -> None:
+def test_a_simulation_that_diverges_says_so(poison: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     b = bench([Ball("ball", 0.1, (0.0, 0.0, 0.1), 0.5, RIGID), floor(0.0, RIGID)])
     b.run(0.01)
     b.data.qvel[2] = poison
     with pytest.raises(RunFailedError, match="contacts diverged"):
         b.run(0.01)
+    assert not list(tmp_path.iterdir())  # MuJoCo writes a log file when it meets such numbers itself
 
 
 def test_shapes_without_a_law_are_refused() -> None:

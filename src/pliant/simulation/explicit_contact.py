@@ -124,13 +124,12 @@ class ExplicitContacts:
         self.model = model
         self.pairs = tuple(pairs)
         self._geoms = [(model.geom(pair.geom_a).id, model.geom(pair.geom_b).id) for pair in self.pairs]
-        self._slots: list[slice] = []
-        self.init(mujoco.MjData(model))
+        self._slots = self._fill(ContactLoop(model, mujoco.MjData(model), *_half_steps()))
 
     def init(self, data: mujoco.MjData) -> ContactState:
         """Untouched contacts of a world, at the forces of its present configuration."""
         loop = ContactLoop(self.model, data, *_half_steps())
-        self._slots = [self._add(loop, *geoms, pair) for geoms, pair in zip(self._geoms, self.pairs, strict=True)]
+        self._fill(loop)
         n = loop.slots
         state = ContactState(
             loop=loop,
@@ -167,9 +166,20 @@ class ExplicitContacts:
         force, lever = state.force[slots], state.point[slots] - about
         return np.concatenate([force.sum(axis=0), np.cross(lever, force).sum(axis=0)])
 
+    def force_on(self, state: ContactState, geom: str) -> Array:
+        """Sum of all contact forces on a geom (3,), N, world axes."""
+        total = np.zeros(3)
+        for pair, slots in zip(self.pairs, self._slots, strict=True):
+            sign = (pair.geom_a == geom) - (pair.geom_b == geom)
+            total += sign * state.force[slots].sum(axis=0)
+        return total
+
     def touching(self, state: ContactState, index: int) -> bool:
         """Whether pair number `index` pushes."""
         return bool(np.any(state.force[self._slots[index]]))
+
+    def _fill(self, loop: ContactLoop) -> list[slice]:
+        return [self._add(loop, *geoms, pair) for geoms, pair in zip(self._geoms, self.pairs, strict=True)]
 
     def _add(self, loop: ContactLoop, geom_a: int, geom_b: int, pair: ContactPair) -> slice:
         try:
@@ -210,7 +220,8 @@ def explicit_contacts(
     mujoco.mj_forward(model, data)
     made: list[ContactPair] = []
     for a, b, surface in pairs:
-        inverse_mass = sum(inverse_mass_at(model, data, model.geom(name).id) for name in (a, b))
+        inverse_mass = _inverse_mass(model, data, model.geom(a).id, presses=True)
+        inverse_mass += _inverse_mass(model, data, model.geom(b).id, presses=False)
         material = ContactMaterial.of(surface, inverse_mass)
         require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
         made.append(ContactPair(a, b, material))
@@ -239,17 +250,11 @@ def require_stable_step(name: str, material: ContactMaterial, inverse_mass: floa
     )
 
 
-def inverse_mass_at(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
-    """Largest eigenvalue of J M⁻¹ Jᵀ at a geom's centre, 1/kg; for a box, of its fastest mode when it stands on four
-    corners.
-
-    Args:
-        model: compiled.
-        data: in the configuration of interest, positions computed.
-        geom: index.
-    """
+def _inverse_mass(model: mujoco.MjModel, data: mujoco.MjData, geom: int, presses: bool) -> float:
+    """Largest eigenvalue of J M⁻¹ Jᵀ at a geom's centre, 1/kg; of a box that presses, of its fastest mode on four
+    corners."""
     body = int(model.geom_bodyid[geom])
-    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_BOX and model.body_weldid[body] != 0:
+    if presses and model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_BOX:
         half2 = np.asarray(model.geom_size[geom]) ** 2
         rocking = max(half2[i] / (half2[i] + half2[j]) for i in range(3) for j in range(3) if i != j)
         return 4.0 * max(1.0, 3.0 * float(rocking)) / float(model.body_mass[body])

@@ -97,7 +97,7 @@ class MujocoPlant(Plant[World]):
         self._parts |= {_along(link.start): link.start for link in self.links}
         pairs = pairs_of(self.scene, self._parts)
         self.model = self._compile(physics_step, pairs)
-        self._explicit = explicit_contacts(self.model, self.start, pairs) if explicit else None
+        self.explicit = explicit_contacts(self.model, self.start, pairs) if explicit else None
         self._sites = {name: self.model.site(name).id for name in dict.fromkeys(frames)}
         self._movable = {
             thing.name: self.model.body(thing.name).id
@@ -115,21 +115,21 @@ class MujocoPlant(Plant[World]):
         mujoco.mj_step1(self.model, data)
         self._apply(world, np.zeros(self.robot.n))  # what the robot compensates by itself, before the first command
         mujoco.mj_forward(self.model, data)
-        if self._explicit is None:
+        if self.explicit is None:
             self._read_contacts(world)
         else:
-            world.contacts = self._explicit.init(data)
-            self._read_explicit(world, self._explicit)
+            world.contacts = self.explicit.init(data)
+            self._read_explicit(world, self.explicit)
         mujoco.mj_step1(self.model, data)
         return self._measure(world, np.zeros(self.robot.n)), world
 
     def step(self, command: Command, world: World) -> tuple[Measurement, World]:
         limit = self.robot.torque_limit
         torque = np.clip(command.torque, -limit, limit)
-        if self._explicit is None:
+        if self.explicit is None:
             self._step_mujoco(world, torque)
         else:
-            self._step_explicit(world, torque, self._explicit)
+            self._step_explicit(world, torque, self.explicit)
         world.ticks += 1
         return self._measure(world, torque), world
 
