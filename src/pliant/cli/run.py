@@ -15,7 +15,7 @@ from pliant.studies.config import merged, parse_assignments, read_toml
 from pliant.studies.registry import get_study, study_names
 from pliant.studies.runner import run_case
 from pliant.telemetry.output import output_folder
-from pliant.cli.report import print_result, save_summary
+from pliant.cli.report import print_results, save_summary
 
 
 def run_command(
@@ -43,7 +43,7 @@ def run_command(
     summary = save_summary(study, [result], folder)
     if result.failure is not None:
         raise RunFailedError(f"{result.failure}; the log until then is {result.log}")
-    print_result(console, study, result)
+    print_results(console, study, [result])
     console.print(f"\nlog      {result.log}\nsummary  {summary}", markup=False, highlight=False, soft_wrap=True)
     for figure in result.figures:
         console.print(f"figure   {figure}", markup=False, highlight=False, soft_wrap=True)

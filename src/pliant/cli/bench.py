@@ -1,0 +1,42 @@
+"""`pliant bench`: how long one step takes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from pliant.errors import ConfigError, options
+from pliant.telemetry.output import write_text
+
+
+def bench_command(console: Console, what: str, file: Path | None) -> None:
+    """Times something and prints percentiles.
+
+    Raises:
+        ConfigError: there is nothing of that name to time.
+        OutputError: the JSON file cannot be written.
+    """
+    if what not in _BENCHES:
+        raise ConfigError(f"there is no benchmark {what!r}; {options(_BENCHES, what)}")
+    result = _BENCHES[what](console)
+    if file is not None:
+        write_text(file, json.dumps(result, indent=2, ensure_ascii=False) + "\n")
+
+
+def _controllers(console: Console) -> dict[str, Any]:
+    from pliant.controllers.benchmark import run
+
+    result = run()
+    table = Table("µs per step", "median", "p90", "p99", "max", title=f"two-task stack on 7 joints, {result['steps']} steps", title_justify="left")
+    for clock in ("cpu", "wall"):
+        table.add_row(f"{clock} time", *(f"{result[clock][name]:.1f}" for name in ("median", "p90", "p99", "max")))
+    console.print(table)
+    return result
+
+
+_BENCHES: Mapping[str, Callable[[Console], dict[str, Any]]] = {"controllers": _controllers}
