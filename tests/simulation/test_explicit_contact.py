@@ -270,6 +270,15 @@ def momentum(b: Bench) -> np.ndarray:
     return total
 
 
+def test_a_box_lies_on_a_fixed_one() -> None:
+    post = Box("post", (0.3, 0.3, 0.1), (0.0, 0.0, 0.0), 0.0, surface=RIGID)
+    box = Box("box", (0.1, 0.1, 0.1), (0.0, 0.0, 0.1005), 1.0, surface=RIGID)
+    b = bench([post, box])
+    b.run(0.3)
+    assert np.abs(b.data.qvel).max() < 1e-9
+    assert np.allclose(b.contacts.force_on(b.state, "box"), [0.0, 0.0, G], atol=1e-6)
+
+
 def test_it_agrees_with_mujocos_own_contact_where_only_the_normal_counts(leg3: Robot) -> None:
     surface = Surface(1e3, 10.0, 0.0)
     things = (Ball("ball", 0.1, (0.5, 0.0, 0.15), 0.5, surface), floor(0.0, surface))

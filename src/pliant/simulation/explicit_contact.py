@@ -254,6 +254,8 @@ def _inverse_mass(model: mujoco.MjModel, data: mujoco.MjData, geom: int, presses
     """Largest eigenvalue of J M⁻¹ Jᵀ at a geom's centre, 1/kg; of a box that presses, of its fastest mode on four
     corners."""
     body = int(model.geom_bodyid[geom])
+    if model.body_weldid[body] == 0:
+        return 0.0  # part of the world
     if presses and model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_BOX:
         half2 = np.asarray(model.geom_size[geom]) ** 2
         rocking = max(half2[i] / (half2[i] + half2[j]) for i in range(3) for j in range(3) if i != j)
