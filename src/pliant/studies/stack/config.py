@@ -89,7 +89,7 @@ class StackConfig(CaseConfig):
     joints: Joints = Joints()
     preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(default="stiff", description="parameters of the stack that `control` starts from")
     control: dict[str, Any] = Field(default={}, description="changes to the controller's parameters, e.g. control.tasks.ee.translation.stiffness=8000")
-    torque_step: float | None = Field(default=0.15, gt=0.0, description="largest change of a joint's torque per period, as a share of its limit; none: unbounded", json_schema_extra={"unit": "1"})
+    torque_step: float | None = Field(default=0.14, gt=0.0, description="largest change of a joint's torque per period, as a share of its limit; none: unbounded", json_schema_extra={"unit": "1"})
     wall: Wall | None = None
     pushes: Pushes | None = None
     retuning: Retuning | None = None

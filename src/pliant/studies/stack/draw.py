@@ -35,7 +35,7 @@ from pliant.telemetry.summary import Metric
 BALANCE_FORCES = (0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0)
 """N, strengths of the elbow's task that the balance case runs through"""
 _REFERENCE, _ACTUAL = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0)
-_CAMERA = Camera(look_at=(0.0, -0.32, 0.42), distance=1.75, azimuth=145.0, elevation=-14.0)
+_CAMERA = Camera(look_at=(0.0, -0.34, 0.40), distance=1.6, azimuth=28.0, elevation=-12.0)
 
 
 def run_figures(config: StackConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:

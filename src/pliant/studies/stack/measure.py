@@ -74,7 +74,7 @@ def _against_no_wall(config: StackConfig, log: Log) -> list[Metric]:
     here = tracking_rmse(config, log)
     bound = 0.5 if config.controller == "stack" else None
     return [
-        Metric(f"RMSE {'xyz'[axis]} more than without the wall", float(abs(here[axis] - free[axis])), "mm", target=bound)
+        Metric(f"RMSE {'xyz'[axis]}: change by the wall", float(abs(here[axis] - free[axis])), "mm", target=bound)
         for axis in (1, 2)
     ]
 
