@@ -100,7 +100,7 @@ def test_rosbags_reads_poses_and_arrays(messages: dict[str, list[tuple[int, str,
 
 
 def test_the_index_of_the_file_is_right(path: Path) -> None:
-    """The mcap package finds by the index the same messages as by reading from front to back, with all checksums checked."""
+    """By the index the mcap package finds the same messages as by reading from front to back; all checksums hold."""
     data = path.read_bytes()
     list(StreamReader(io.BytesIO(data), validate_crcs=True).records)
     seeking = mcap.reader.SeekingReader(io.BytesIO(data), validate_crcs=True, decoder_factories=[DecoderFactory()])

@@ -73,6 +73,20 @@ def test_mean_over_runs_hides_no_failure() -> None:
     (spoiled,) = over_runs([*runs, (Metric("a", math.nan, "N", 2.0, 3.0),)])
     assert math.isnan(spoiled.value)
     assert spoiled.met is False
+    (never,) = over_runs([*runs, (Metric("a", math.inf, "N", 2.0, 3.0),)])
+    assert never.value == math.inf
+
+
+def test_the_worst_run_decides_where_it_should() -> None:
+    runs = [
+        (Metric("peak", value, "N", target=5.0), Metric("reach", value, "N", target=5.0, at_least=True))
+        for value in (1.0, 9.0)
+    ]
+    largest, least = over_runs(runs, worst=("peak", "reach"))
+    assert (largest.value, largest.met, largest.std) == (9.0, False, None)
+    assert (least.value, least.met) == (1.0, False)
+    spoiled, _ = over_runs([*runs, (Metric("peak", math.nan, "N", target=5.0),)], worst=("peak",))
+    assert math.isnan(spoiled.value)
 
 
 def test_table_and_markdown_show_targets_and_failures() -> None:

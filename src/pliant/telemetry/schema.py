@@ -53,10 +53,12 @@ class Channel:
 
 
 DIAGNOSTICS = (
-    Channel("*energy*", "J"),
-    Channel("*power*", "W"),
-    Channel("*wrench*", _WRENCH),
-    Channel("*torque*", _TORQUE),
+    Channel("*energy", "J"),
+    Channel("*energy_*", "J"),
+    Channel("energy/*", "J"),
+    Channel("*power", "W"),
+    Channel("*wrench", _WRENCH),
+    Channel("*torque", _TORQUE),
 )
 """Units of diagnostics by custom; a recorder's own table goes first."""
 

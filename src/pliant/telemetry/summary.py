@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 import pliant
 from pliant.errors import OutputError
@@ -110,12 +112,13 @@ class Summary:
             raise OutputError(f"{path} is not a summary of a pliant study ({type(error).__name__}: {error})") from error
 
 
-def over_runs(runs: Sequence[Sequence[Metric]]) -> tuple[Metric, ...]:
-    """Mean and standard deviation of each metric over runs.
+def over_runs(runs: Sequence[Sequence[Metric]], worst: Collection[str] = ()) -> tuple[Metric, ...]:
+    """Mean and standard deviation of each metric over runs, or the worst run's value.
 
     Args:
         runs: the metrics of each run that reached its end. A metric that some runs lack is averaged over the others;
             one that is not finite makes the mean so, so that no failure hides.
+        worst: names of metrics that the worst run decides, as λ_max and t_break do in [FFMPC]; those have no deviation.
 
     Returns:
         One metric per name, in the order of first appearance.
@@ -124,23 +127,19 @@ def over_runs(runs: Sequence[Sequence[Metric]]) -> tuple[Metric, ...]:
     for run in runs:
         for metric in run:
             values.setdefault(metric.name, []).append(metric)
-    return tuple(_averaged(found) for found in values.values())
+    return tuple(_worst(found) if name in worst else _averaged(found) for name, found in values.items())
 
 
 def _averaged(found: Sequence[Metric]) -> Metric:
     numbers = [metric.value for metric in found]
-    mean = math.fsum(numbers) / len(numbers) if all(map(math.isfinite, numbers)) else math.nan
-    variance = math.fsum((number - mean) ** 2 for number in numbers) / len(numbers)
-    first = found[0]
-    return Metric(
-        first.name,
-        mean,
-        first.unit,
-        first.paper,
-        first.target,
-        first.at_least,
-        math.sqrt(variance) if len(found) > 1 else None,
-    )
+    mean = float(np.mean(numbers))  # NaN and infinity pass through
+    deviation = float(np.std(numbers)) if math.isfinite(mean) else math.nan
+    return replace(found[0], value=mean, std=deviation if len(found) > 1 else None)
+
+
+def _worst(found: Sequence[Metric]) -> Metric:
+    numbers = [metric.value for metric in found]
+    return replace(found[0], value=float(np.min(numbers) if found[0].at_least else np.max(numbers)))
 
 
 def _case_to_json(case: Case) -> dict[str, Any]:

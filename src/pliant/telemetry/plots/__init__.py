@@ -1,10 +1,11 @@
 """Figures: matplotlib without a display and without its global state, in one style. Each function returns a
 `Figure`."""
 
-from pliant.telemetry.plots.bars import compare, sweep
+from pliant.telemetry.plots.bars import compare
 from pliant.telemetry.plots.energy import energy_ledger
 from pliant.telemetry.plots.joints import joint_torques, posture_difference
 from pliant.telemetry.plots.log import plot_log
+from pliant.telemetry.plots.parameter import sweep
 from pliant.telemetry.plots.path import Path2D, task_path
 from pliant.telemetry.plots.portrait import attractor, phase_portrait
 from pliant.telemetry.plots.series import Curve, Panel, time_series
