@@ -176,15 +176,23 @@ def _wrenches(tick: Tick) -> list[Group]:
 
 
 def _tasks(tick: Tick) -> list[Group]:
-    return [_task(index, task) for index, task in enumerate(tick.reference.tasks)]
+    found: list[Group] = []
+    for index, task in enumerate(tick.reference.tasks):
+        found.append(_task(index, task))
+        if task.rotation is not None:
+            found.append(_task_rotation(index, task.frame))
+    return found
+
+
+def _task_rotation(index: int, frame: str) -> Group:
+    """A group of its own: matrices from pinocchio have the memory layout of Fortran."""
+    channel = Channel(f"reference/{frame}/rotation", "1", (3, 3))
+    return Group(lambda tick: (tick.reference.tasks[index].rotation,), (channel,))
 
 
 def _task(index: int, task: TaskReference) -> Group:
-    fields: list[tuple[str, str, tuple[int, ...]]] = [("position", "m", (3,))]
-    if task.rotation is not None:
-        fields.append(("rotation", "1", (3, 3)))
-    fields += [("velocity", _TWIST, (6,)), ("acceleration", _ACCELERATION, (6,)), ("wrench", _WRENCH, (6,))]
-    channels = [Channel(f"reference/{task.frame}/{name}", unit, shape, _labels(shape)) for name, unit, shape in fields]
+    fields = (("position", "m", 3), ("velocity", _TWIST, 6), ("acceleration", _ACCELERATION, 6), ("wrench", _WRENCH, 6))
+    channels = [Channel(f"reference/{task.frame}/{name}", unit, (k,), axis_labels(k)) for name, unit, k in fields]
     names = [name for name, _, _ in fields]
     if task.tuning is not None:
         shape = (task.tuning.axes,)

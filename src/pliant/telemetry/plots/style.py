@@ -57,8 +57,8 @@ def legend(ax: Axes, outside: bool = False, columns: int = 1, least: int = 2) ->
     if len(labels) < least:
         return
     place: dict[str, object] = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.02)} if outside else {"loc": "best"}
-    made = ax.legend(handles, labels, frameon=not outside, fontsize=SMALL, ncols=columns, handlelength=1.6, **place)  # pyright: ignore[reportArgumentType]
-    made.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
+    made = ax.legend(handles, labels, frameon=not outside, fontsize=SMALL, ncols=columns, handlelength=1.6, **place)
+    # pyright: ignore[reportArgumentType] made.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
     for text in made.get_texts():
         text.set_color(INK)
 
