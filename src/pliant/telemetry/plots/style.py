@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -56,9 +57,11 @@ def legend(ax: Axes, outside: bool = False, columns: int = 1, least: int = 2) ->
     handles, labels = ax.get_legend_handles_labels()
     if len(labels) < least:
         return
-    place: dict[str, object] = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.02)} if outside else {"loc": "best"}
-    made = ax.legend(handles, labels, frameon=not outside, fontsize=SMALL, ncols=columns, handlelength=1.6, **place)
-    # pyright: ignore[reportArgumentType] made.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
+    look: dict[str, Any] = {"frameon": not outside, "fontsize": SMALL, "ncols": columns, "handlelength": 1.6}
+    if outside:
+        look |= {"loc": "upper left", "bbox_to_anchor": (1.01, 1.02)}
+    made = ax.legend(handles, labels, **look)
+    made.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
     for text in made.get_texts():
         text.set_color(INK)
 
