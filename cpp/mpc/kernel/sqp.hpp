@@ -1,0 +1,287 @@
+// Stagewise sequential quadratic programming with a filter line search, after Jordana, Kleff, Meduri, Carpentier,
+// Mansard and Righetti, "Stagewise implementations of sequential quadratic programming for model-predictive control"
+// (2023). All memory is taken at construction.
+#pragma once
+#include <stddef.h>
+#include <new>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "force_feedback.hpp"
+#include "output_force.hpp"
+#include "rest.hpp"
+#include "riccati.hpp"
+
+namespace pliant::mpc::PLIANT_ISA {
+
+inline double now_seconds() {
+    timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+// An array of T in memory aligned for the widest vectors; lives as long as its owner.
+template <class T> struct Array {
+    T *data = nullptr;
+    int count = 0;
+
+    Array() = default;
+    Array(const Array &) = delete;
+    Array &operator=(const Array &) = delete;
+    ~Array() { free(data); }
+    bool allocate(int n) {
+        count = n;
+        data = static_cast<T *>(aligned_alloc(64, (sizeof(T) * size_t(n) + 63) / 64 * 64));
+        if (data) memset(static_cast<void *>(data), 0, sizeof(T) * size_t(n));
+        return data != nullptr;
+    }
+    T &operator[](int i) { return data[i]; }
+    const T &operator[](int i) const { return data[i]; }
+};
+
+// Positions, velocities and extra part of a dense state, and the lanes they live in.
+template <class L> struct StateMap {
+    int dof, extra;
+    int dim() const { return 2 * dof + extra; }
+    int lane(int i) const {
+        if (i < dof) return i;
+        if (i < 2 * dof) return 8 + i - dof;
+        return L::has_torque ? 16 + i - 2 * dof : L::force_lane(i - 2 * dof);
+    }
+    Row<L> pack(const double *x) const {
+        Row<L> r = zero_row<L>();
+        for (int i = 0; i < dim(); ++i) r.set(lane(i), x[i]);
+        return r;
+    }
+    void unpack(const Row<L> &r, double *x) const {
+        for (int i = 0; i < dim(); ++i) x[i] = r[lane(i)];
+    }
+};
+
+template <class L> PLIANT_INLINE bool finite(const Row<L> &r) {
+    return isfinite(sum_magnitude(r));
+}
+
+// A trajectory with its expansions: the current iterate, or a trial of the line search.
+template <class L> struct Iterate {
+    Array<Row<L>> x, gap;
+    Array<Lanes> u;
+    Array<NodeValues<L>> node;
+    double cost = 0, infeasibility = 0;
+
+    bool allocate(int N) {
+        return x.allocate(N + 1) && gap.allocate(N + 1) && u.allocate(N) && node.allocate(N + 1);
+    }
+};
+
+template <class L> class Solver {
+  public:
+    Chain chain;
+    ModelConstants model;
+    Options options;
+    StateMap<L> map;
+    Step<L> step;
+
+    bool allocate(const ChainData &chain_data, const ModelData &model_data, const Options &opts) {
+        options = opts;
+        chain = make_chain(chain_data, L::J);
+        model.data = model_data;
+        const double pi = 3.14159265358979323846;
+        model.disc = {opts.dt, exp(-2 * pi * model_data.torque_bandwidth * opts.dt),
+                      L::extra == Extra::force && model_data.integrator == Integrator::exponential, {}};
+        map = {chain_data.dof, L::has_torque ? chain_data.dof : L::M};
+        step = Step<L>(chain, opts.dt, model.disc.alpha);
+        const int N = opts.horizon;
+        return iterates[0].allocate(N) && iterates[1].allocate(N) && stages.allocate(N + 1) && factors.allocate(N + 1) &&
+               dx.allocate(N + 1) && du.allocate(N) && costates.allocate(N + 1) &&
+               filter_cost.allocate(opts.filter_size) && filter_infeasibility.allocate(opts.filter_size);
+    }
+
+    void prepare(const NodeData *nodes, int k) {
+        make_stage(nodes[k], model.data, model.disc, chain.dof, k == options.horizon, stages[k]);
+    }
+
+    void evaluate_node(const Stage &s, const Row<L> &x, const Lanes &u, bool derivatives, NodeValues<L> &out) const {
+        if constexpr (L::extra == Extra::force) force_feedback_node<L>(chain, model, s, x, u, derivatives, out);
+        else output_force_node<L>(chain, model, s, x, u, derivatives, out);
+    }
+
+    // Inverse task inertia diag(J M⁻¹ Jᵀ) at q for the exponential step.
+    void freeze(const Lanes &q) {
+        Rest<L::J> rest;
+        make_rest<L::J>(chain, model.data, q, rest);
+        for (int i = 0; i < model.data.contact_dim; ++i) model.disc.inverse_inertia[i] = rest.inverse_inertia[i];
+    }
+
+    void solve(const NodeData *nodes, const double *x0, const Limits &limits, Report &report);
+    Iterate<L> &current() { return iterates[active]; }
+    const Iterate<L> &current() const { return iterates[active]; }
+
+    Array<StageFactor<L>> factors;
+    Array<Stage> stages;
+
+  private:
+    Iterate<L> iterates[2];
+    int active = 0;
+    Array<Row<L>> dx, costates;
+    Array<Lanes> du;
+    Array<double> filter_cost, filter_infeasibility;
+    double regularisation = 0;
+
+    void evaluate(Iterate<L> &it);
+    bool backward(const Iterate<L> &it);
+    void forward(const Iterate<L> &it);
+    bool search_direction(Report &report);
+    double optimality(const Iterate<L> &it) const;
+    bool line_search(int iteration, Report &report);
+    bool acceptable(const Iterate<L> &trial, int iteration) const;
+    Status iterate(const Limits &limits, double start, Report &report);
+};
+
+template <class L> void Solver<L>::evaluate(Iterate<L> &it) {
+    const int N = options.horizon;
+    it.cost = 0;
+    it.infeasibility = 0;
+    for (int k = 0; k <= N; ++k) {
+        evaluate_node(stages[k], it.x[k], k < N ? it.u[k] : zero(), true, it.node[k]);
+        it.cost += it.node[k].cost;
+        if (k == N) break;
+        for (int b = 0; b < L::blocks; ++b) it.gap[k + 1].block[b] = it.node[k].x_next.block[b] - it.x[k + 1].block[b];
+        it.infeasibility += sum_magnitude(it.gap[k + 1]);
+    }
+}
+
+template <class L> bool Solver<L>::backward(const Iterate<L> &it) {
+    const int N = options.horizon;
+    terminal_step(static_cast<const Expansion<L> &>(it.node[N]), regularisation, factors[N]);
+    for (int k = N - 1; k >= 0; --k)
+        if (!backward_step<L>(it.node[k], it.node[k], it.gap[k + 1], factors[k + 1], step, regularisation, factors[k]))
+            return false;
+    return true;
+}
+
+template <class L> void Solver<L>::forward(const Iterate<L> &it) {
+    const int N = options.horizon;
+    dx[0] = zero_row<L>(); // the first state is measured
+    for (int k = 0; k < N; ++k) {
+        du[k] = control_step(factors[k], dx[k]);
+        dx[k + 1] = propagate<L>(it.node[k], step, dx[k], du[k], it.gap[k + 1]);
+        costates[k + 1] = costate(factors[k + 1], dx[k + 1]);
+    }
+}
+
+// Newton step of the current iterate; raises the regularisation while the recursion is not positive definite.
+template <class L> bool Solver<L>::search_direction(Report &report) {
+    constexpr double largest_regularisation = 1e3;
+    for (;;) {
+        ++report.factorisations;
+        if (backward(current())) {
+            forward(current());
+            return true;
+        }
+        regularisation = larger(10 * regularisation, 1e-9);
+        if (regularisation > largest_regularisation) return false;
+    }
+}
+
+// ∞-norm of the KKT residual with the multipliers of the last direction.
+template <class L> double Solver<L>::optimality(const Iterate<L> &it) const {
+    const int N = options.horizon;
+    double worst = 0;
+    for (int k = 0; k < N; ++k) {
+        Row<L> by_x;
+        Lanes by_u;
+        times_tangent<L>(costates[k + 1], it.node[k], step, by_x, by_u);
+        worst = larger(worst, largest(absolute(by_u + it.node[k].Lu)));
+        if (k > 0) {
+            for (int b = 0; b < L::blocks; ++b)
+                by_x.block[b] += it.node[k].Lx.block[b] - costates[k].block[b];
+            worst = larger(worst, largest_magnitude(by_x));
+        }
+        worst = larger(worst, largest_magnitude(it.gap[k + 1]));
+    }
+    Row<L> last = it.node[N].Lx;
+    for (int b = 0; b < L::blocks; ++b) last.block[b] -= costates[N].block[b];
+    return larger(worst, largest_magnitude(last));
+}
+
+// Filter of Fletcher and Leyffer: not dominated in cost and infeasibility by a recent iterate.
+template <class L> bool Solver<L>::acceptable(const Iterate<L> &trial, int iteration) const {
+    if (!isfinite(trial.cost) || !isfinite(trial.infeasibility)) return false;
+    const int kept = iteration + 1 < options.filter_size ? iteration + 1 : options.filter_size;
+    for (int i = 0; i < kept; ++i) {
+        const int slot = (iteration - i) % options.filter_size;
+        if (filter_cost[slot] <= trial.cost && filter_infeasibility[slot] <= trial.infeasibility) return false;
+    }
+    return true;
+}
+
+template <class L> bool Solver<L>::line_search(int iteration, Report &report) {
+    const int N = options.horizon;
+    const Iterate<L> &from = current();
+    Iterate<L> &trial = iterates[1 - active];
+    filter_cost[iteration % options.filter_size] = from.cost;
+    filter_infeasibility[iteration % options.filter_size] = from.infeasibility;
+    double length = 1;
+    for (int attempt = 0; attempt < options.line_search_steps; ++attempt, length *= 0.5) {
+        for (int k = 0; k <= N; ++k) {
+            trial.x[k] = from.x[k];
+            add_scaled(trial.x[k], dx[k], length);
+            if (k < N) trial.u[k] = from.u[k] + du[k] * length;
+        }
+        evaluate(trial);
+        ++report.evaluations;
+        if (acceptable(trial, iteration)) {
+            active = 1 - active;
+            return true;
+        }
+    }
+    return false;
+}
+
+template <class L> Status Solver<L>::iterate(const Limits &limits, double start, Report &report) {
+    int failures = 0;
+    for (;;) {
+        if (!search_direction(report)) return Status::not_positive_definite;
+        if (report.iterations == 0) report.kkt = optimality(current());
+        if (!isfinite(report.kkt)) return Status::nan;
+        if (report.kkt <= limits.tolerance) return Status::converged;
+        if (report.iterations >= limits.max_iterations) return Status::max_iterations;
+        if (line_search(report.iterations, report)) {
+            failures = 0;
+            regularisation = larger(0.1 * regularisation, options.regularisation);
+        } else {
+            if (++failures == 3) return Status::line_search;
+            regularisation = larger(100 * regularisation, 1e-7);
+        }
+        ++report.iterations;
+        report.kkt = optimality(current()); // with the multipliers of this step: no further factorisation if it suffices
+        if (report.kkt <= limits.tolerance) return Status::converged;
+        if (report.iterations >= limits.max_iterations) return Status::max_iterations;
+        if (limits.time_budget >= 0 && now_seconds() - start > limits.time_budget) return Status::time_budget;
+    }
+}
+
+template <class L>
+void Solver<L>::solve(const NodeData *nodes, const double *x0, const Limits &limits, Report &report) {
+    const double start = now_seconds();
+    report = {};
+    regularisation = options.regularisation;
+    const Row<L> first = map.pack(x0);
+    report.status = Status::nan;
+    if (finite(first)) {
+        if (model.disc.exponential) freeze(first.block[0] * chain.is_joint);
+        for (int k = 0; k <= options.horizon; ++k) prepare(nodes, k);
+        Iterate<L> &it = current();
+        it.x[0] = first;
+        evaluate(it);
+        report.evaluations = 1;
+        if (isfinite(it.cost) && isfinite(it.infeasibility)) report.status = iterate(limits, start, report);
+    }
+    report.cost = current().cost;
+    report.gap = current().infeasibility;
+    report.seconds = now_seconds() - start;
+}
+
+} // namespace pliant::mpc::PLIANT_ISA
