@@ -160,6 +160,8 @@ class Preview:
     """(N+1, 6) desired reaction, N and N·m"""
     phase: tuple[str, ...] = ()
     """(N+1,) name of the phase at each node"""
+    posture: Array | None = None
+    """(N+1, n) joint configuration that goes with the task, rad"""
 
 
 @dataclass(frozen=True, slots=True)
