@@ -1,0 +1,29 @@
+"""Predictive control in contact: classical, torque feedback and force feedback, for any serial robot.
+
+A configuration (`MpcConfig`, or one of the three with their defaults) is bound to a robot by `MpcController`, which
+solves the problem with the compiled core at every period.
+"""
+
+from pliant.mpc.config import Bounds, ClassicalMpc, Contact, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.controller import MpcController, MpcState
+from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.problem import MpcProblem, problem_from_model, problem_from_robot
+from pliant.mpc.registry import MPC_CONTROLLERS
+
+__all__ = [
+    "MPC_CONTROLLERS",
+    "Bounds",
+    "ClassicalMpc",
+    "Contact",
+    "Costs",
+    "ForceFeedbackMpc",
+    "MpcConfig",
+    "MpcController",
+    "MpcProblem",
+    "MpcState",
+    "Phase",
+    "Term",
+    "TorqueFeedbackMpc",
+    "problem_from_model",
+    "problem_from_robot",
+]

@@ -1,0 +1,172 @@
+"""Typed configuration of a predictive controller, and the defaults of the three controllers of [FFMPC].
+
+[FFMPC]: Kleff, Jordana, Mansard, Righetti, "Force feedback in model predictive control: a soft contact approach", 2024.
+The default weights are those of its authors' polishing task.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from pliant.mpc.costs import Costs, Described, Phase, Term
+
+Kind = Literal["force_feedback", "classical", "torque_feedback", "free", "naive_viscoelastic"]
+Axes = Literal["local", "world", "surface"]
+
+_PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
+
+
+class Contact(Described):
+    """Where and how the robot touches."""
+
+    frame: str | None = Field(default=None, description="contact frame; None: the tool frame")
+    dimension: Literal[1, 3, 6] = Field(default=1, description="1 normal force, 3 force, 6 force and moment")
+    axes: Axes = Field(default="world", description="axes of the force: of the frame, of the world, of the surface")
+    normal: tuple[float, float, float] = Field(
+        default=(0.0, 0.0, 1.0), description="outward normal of the surface in the world, for axes 'surface'"
+    )
+    stiffness: tuple[float, ...] = Field(default=(1e3,), description="K per axis, N/m (N·m/rad); the last repeats")
+    damping: tuple[float, ...] = Field(default=(1e2,), description="B per axis, N s/m (N·m s/rad); the last repeats")
+    integrator: Literal["euler", "exponential"] = Field(
+        default="euler", description="of the force: 'euler' [FFMPC] eq. 24, 'exponential' for stiff contacts"
+    )
+    baumgarte: tuple[float, float] = Field(default=(0.0, 0.0), description="rigid contact: 1/s² and 1/s")
+
+
+class Bounds(Described):
+    """Inequalities. With none of them set the solver takes its faster path."""
+
+    torque: bool = Field(default=False, description="keep the control within the robot's torque limits")
+    force_max: float | None = Field(default=None, gt=0.0, description="0 ≤ normal force ≤ force_max, N")
+    friction: float | None = Field(
+        default=None, gt=0.0, description="cone: tangential ≤ friction · normal, dimension 3, 6"
+    )
+
+    @property
+    def any(self) -> bool:
+        return self.torque or self.force_max is not None or self.friction is not None
+
+
+class MpcConfig(Described):
+    """A predictive controller."""
+
+    kind: Kind = Field(default="force_feedback", description="which model predicts")
+    frame: str = Field(default="tool", description="frame whose pose is tracked")
+    horizon: int = Field(default=5, ge=1, le=200, description="N, running nodes")
+    dt: float = Field(default=3e-3, gt=0.0, le=0.1, description="step of the horizon, s")
+    period: float = Field(default=2e-3, gt=0.0, le=0.1, description="a new solve every so often, s")
+    max_iterations: int = Field(default=8, ge=1, le=1000, description="SQP steps per solve")
+    tolerance: float = Field(default=1e-4, gt=0.0, description="KKT residual at which a solve ends")
+    time_budget: float | None = Field(default=None, gt=0.0, description="wall time after which no iteration starts, s")
+    deadline: float | None = Field(default=None, gt=0.0, description="wall time of a solve that counts as missed, s")
+    regularisation: float = Field(default=1e-9, ge=0.0, description="added to the diagonal of the Hessian")
+    between: Literal["hold", "riccati"] = Field(
+        default="hold", description="between two solves: hold the torque, or the solver's own state feedback"
+    )
+    posture: Literal["start", "reference"] = Field(
+        default="reference", description="posture reference: where the controller started, or the task's if it has one"
+    )
+    task_velocity: bool = Field(
+        default=True, description="velocity cost about the task's velocity; false: about zero, as in [FFMPC] eq. 25.5"
+    )
+    contact: Contact = Contact()
+    torque_bandwidth: float = Field(default=50.0, gt=0.0, description="f_c of the actuation in torque feedback, Hz")
+    fallback_damping: float = Field(default=5.0, ge=0.0, description="joint damping when no plan is left, N·m s/rad")
+    max_gap: float = Field(default=1e-2, gt=0.0, description="a solution whose dynamics are open by more is not used")
+    bounds: Bounds = Bounds()
+    costs: Costs = Costs()
+    phases: dict[str, Phase] = Field(
+        default={"free": Phase(), "contact": Phase(contact=True)},
+        min_length=1,
+        description="costs of each phase by name",
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> MpcConfig:
+        for name, value in (("stiffness", self.contact.stiffness), ("damping", self.contact.damping)):
+            if len(value) > self.contact.dimension:
+                raise ValueError(f"contact.{name} has {len(value)} entries, the contact has {self.contact.dimension}")
+            if not all(entry > 0.0 for entry in value):
+                raise ValueError(f"contact.{name} must be above zero on every axis, got {list(value)}")
+        if self.bounds.friction is not None and self.contact.dimension == 1:
+            raise ValueError("bounds.friction needs a contact of dimension 3 or 6, got 1")
+        if self.kind == "torque_feedback" and self.between == "riccati":
+            raise ValueError("between = 'riccati' needs the torque as control; torque feedback filters it: use 'hold'")
+        return self
+
+
+def _phases(track: Term, contact: Term, circle: Term) -> dict[str, Phase]:
+    return {
+        "reach": Phase(translation=track),
+        "track": Phase(translation=track),
+        "contact": Phase(contact=True, translation=contact),
+        "ramp": Phase(contact=True, translation=contact),
+        "circle": Phase(contact=True, translation=circle),
+    }
+
+
+def _translation(weight: float, activation: tuple[float, ...], per_node: float | None = None) -> Term:
+    return Term(weight=weight, activation=activation, per_node=per_node, terminal_times_dt=False)
+
+
+_ALL = (1.0, 1.0, 1.0)
+_POSTURE = Term(weight=0.02, activation=(20.0, 20.0, 20.0, 10.0, 10.0, 10.0))
+_JOINT_VELOCITY = Term(weight=0.02, activation=(2.0,))
+_VELOCITY = Term(weight=0.05, terminal=1.0)
+
+
+class ForceFeedbackMpc(MpcConfig):
+    """Force feedback, [FFMPC] section V-C: the measured contact force is part of the state."""
+
+    kind: Kind = "force_feedback"
+    costs: Costs = Costs(
+        posture=_POSTURE,
+        joint_velocity=_JOINT_VELOCITY,
+        torque=Term(weight=1e-4),
+        rotation=Term(weight=20.0),
+        velocity=_VELOCITY,
+        force=Term(weight=0.01, terminal=0.05),
+        force_rate=Term(weight=6e-7),
+    )
+    phases: dict[str, Phase] = _phases(
+        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
+    )
+
+
+class ClassicalMpc(MpcConfig):
+    """Classical, [FFMPC] section III-C: rigid contact, the measured force is not used."""
+
+    kind: Kind = "classical"
+    contact: Contact = Contact(baumgarte=(0.0, 10.0))
+    costs: Costs = Costs(
+        posture=_POSTURE,
+        joint_velocity=_JOINT_VELOCITY,
+        torque=Term(weight=1e-4),
+        rotation=Term(weight=20.0),
+        velocity=_VELOCITY,
+        force=Term(weight=1000.0),
+    )
+    phases: dict[str, Phase] = _phases(
+        _translation(5.0, _ALL, per_node=2.0), _translation(2.0, _ALL), _translation(60.0, _PLANE)
+    )
+
+
+class TorqueFeedbackMpc(MpcConfig):
+    """Torque feedback, [FFMPC] section IV-C: rigid contact, the measured joint torque is part of the state."""
+
+    kind: Kind = "torque_feedback"
+    contact: Contact = Contact(baumgarte=(0.0, 10.0))
+    costs: Costs = Costs(
+        posture=Term(weight=0.02, activation=(10.0, 10.0, 40.0, 10.0, 10.0, 50.0)),
+        joint_velocity=_JOINT_VELOCITY,
+        torque=Term(weight=1e-4),
+        unfiltered_torque=Term(weight=1e-9),
+        rotation=Term(weight=10.0),
+        velocity=_VELOCITY,
+        force=Term(weight=1000.0),
+    )
+    phases: dict[str, Phase] = _phases(
+        _translation(12.0, _ALL, per_node=5.0), _translation(200.0, _PLANE), _translation(200.0, _PLANE)
+    )

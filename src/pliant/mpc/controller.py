@@ -1,0 +1,217 @@
+"""Predictive control behind the controller interface: classical, torque feedback, force feedback."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import pinocchio as pin
+
+from pliant import _mpc
+from pliant.errors import ConfigError, SignalError, options
+from pliant.interfaces import Controller
+from pliant.mpc import diagnostics
+from pliant.mpc.chain import chain_from_robot
+from pliant.mpc.config import MpcConfig
+from pliant.mpc.horizon import HorizonReference, along_horizon
+from pliant.mpc.nodes import NodeParameters
+from pliant.mpc.plan import Plan, SafeTorque, plan_of, torque_from, usable
+from pliant.mpc.problem import MpcProblem, problem_from_robot
+from pliant.robot import Robot
+from pliant.signals import Command, Estimate, Reference
+from pliant.spatial import Array, all_finite
+
+_TICK = 1e-9  # s; smaller than any period, larger than the rounding of a clock
+
+
+@dataclass(slots=True)
+class MpcState:
+    """State of a predictive controller: the solver with its plan, and what the next step needs. Consumed by `step`."""
+
+    solver: _mpc.Solver
+    nodes: _mpc.Nodes
+    """views into the solver"""
+    data: pin.Data
+    posture: Array
+    """(n,) rad, where the controller started"""
+    q: Array
+    """(n,) last finite positions, rad"""
+    v: Array
+    """(n,) last finite velocities, rad/s"""
+    next_solve: float
+    """s"""
+    plan: Plan | None = None
+    phases: tuple[object, ...] = ()
+    """what the weights in the nodes were written for"""
+    touching: bool = False
+    """whether the first node was in contact"""
+    failures: int = 0
+    """solves in a row that left no usable solution"""
+    channels: dict[str, float | Array] = field(default_factory=dict[str, "float | Array"])
+
+
+class MpcController(Controller[MpcState]):
+    """Solves the predictive problem every `config.period` and sends its first torque.
+
+    Between two solves it does what `config.between` says. Without a usable solution it follows the last usable plan to
+    its end, then compensates gravity with joint damping. No torque that is not finite leaves it.
+
+    Args:
+        robot: serial, at most 8 joints.
+        config: which model, costs, phases.
+
+    Raises:
+        RobotError: a robot that the kernel cannot take, an unknown frame.
+        ConfigError: weights that do not fit the robot, a stiffness outside the integrator's range.
+    """
+
+    def __init__(self, robot: Robot, config: MpcConfig) -> None:
+        self.robot, self.config = robot, config
+        self.problem: MpcProblem = problem_from_robot(robot, config)
+        self.chain = chain_from_robot(robot, config.frame, config.contact.frame)
+        self.model = kernel_model(self.problem)
+        self._safe = SafeTorque(robot.model, config.fallback_damping)
+        self._limit = robot.torque_limit
+
+    def init(self, estimate: Estimate) -> MpcState:
+        """State before the first step.
+
+        Raises:
+            SignalError: the estimate lacks the contact force that force feedback needs, or is not finite.
+            ShapeError: the estimate is of another robot.
+        """
+        q = np.array(self.robot.vector(estimate.q, "the estimate's q"))
+        v = np.array(self.robot.vector(estimate.v, "the estimate's v"))
+        self._measured_state(estimate)
+        solver = kernel_solver(self.problem, self.chain, self.model)
+        nodes = solver.nodes
+        self.problem.write_constants(nodes)
+        return MpcState(solver, nodes, self.robot.model.createData(), q, q, v, next_solve=estimate.time)
+
+    def step(self, estimate: Estimate, reference: Reference, state: MpcState) -> tuple[Command, MpcState]:
+        x = self._measured_state(estimate)
+        if all_finite(estimate.q, estimate.v):
+            state.q, state.v = estimate.q, estimate.v
+        if not all_finite(x):
+            x = None
+        if estimate.time >= state.next_solve - _TICK:
+            self._solve(estimate, reference, x, state)
+            state.next_solve = estimate.time + self.config.period
+        wanted, source = self._torque(estimate.time, x, state)
+        torque = np.clip(wanted, -self._limit, self._limit)
+        channels: Mapping[str, float | Array] = {
+            **state.channels,
+            "mpc/source": float(diagnostics.SOURCE_CODES[source]),
+            "mpc/failures": float(state.failures),
+        }
+        return Command(estimate.time, torque, wanted - torque, channels), state
+
+    # ------------------------------------------------------------------ inside
+
+    def _solve(self, estimate: Estimate, reference: Reference, x: Array | None, state: MpcState) -> None:
+        """Replaces the plan if there is a usable solution."""
+        config = self.config
+        if x is None:
+            state.failures += 1
+            state.channels = diagnostics.of_no_solution(config.horizon, self.problem.m)
+            return
+        horizon = along_horizon(reference, config.frame, config.horizon, config.dt)
+        self._write_horizon(horizon, estimate, x, state)
+        if state.plan is None or state.failures:
+            state.solver.reset()
+            state.solver.quasi_static(x)
+        elif estimate.time - state.plan.time > 0.5 * config.dt:
+            state.solver.shift()
+        solution = state.solver.solve(
+            x, max_iterations=config.max_iterations, tolerance=config.tolerance, time_budget=config.time_budget
+        )
+        n = self.robot.n
+        if usable(solution, config):
+            state.plan, state.failures = plan_of(solution, estimate.time, n, config), 0
+        else:
+            state.failures += 1
+        path = np.stack([self.chain.tool_placement(q)[1] for q in np.nan_to_num(solution.xs[:, :n])])
+        in_contact = int(np.count_nonzero(state.nodes.contact_active))
+        state.channels = diagnostics.of_solution(solution, path, in_contact, config.deadline)
+
+    def _write_horizon(self, horizon: HorizonReference, estimate: Estimate, x: Array, state: MpcState) -> None:
+        phases = tuple(phase or self._unnamed_phase(estimate) for phase in horizon.phase)
+        key = (*phases, horizon.rotation is None)
+        if key != state.phases:
+            self.problem.write_phases(state.nodes, phases, oriented=horizon.rotation is not None)
+            state.phases = key
+        self.problem.write_references(state.nodes, horizon, state.posture)
+        self._write_anchor(state, horizon, x)
+
+    def _write_anchor(self, state: MpcState, horizon: HorizonReference, x: Array) -> None:
+        """Where the contact rests: where it began, or where the reference will be when it begins."""
+        touching = bool(state.nodes.contact_active[0])
+        if touching and not state.touching:
+            R, p = self.chain.contact_placement(x[: self.robot.n])
+            state.nodes.anchor_translation[...] = p
+            state.nodes.anchor_rotation[...] = R
+        elif not touching:
+            state.nodes.anchor_translation[...] = horizon.position
+            if horizon.rotation is not None:
+                state.nodes.anchor_rotation[...] = horizon.rotation
+        state.touching = touching
+
+    def _unnamed_phase(self, estimate: Estimate) -> str:
+        """For a reference without phases: the first one that is (not) in contact, as the estimate says."""
+        touches = bool(estimate.contacts.get(self.problem.contact_frame, False))
+        for name, phase in self.config.phases.items():
+            if phase.contact == touches:
+                return name
+        known = options(self.config.phases)
+        raise ConfigError(f"a reference without phases needs a phase with contact = {touches}; {known}")
+
+    def _measured_state(self, estimate: Estimate) -> Array:
+        """(nx,) x of now: q, v and, by kind, contact force or joint torque."""
+        if self.config.kind == "torque_feedback":
+            return np.concatenate([estimate.q, estimate.v, estimate.torque])
+        if self.config.kind != "force_feedback":
+            return np.concatenate([estimate.q, estimate.v])
+        frame = self.problem.contact_frame
+        wrench = estimate.wrenches.get(frame)
+        if wrench is None:
+            known = options(estimate.wrenches)
+            raise SignalError(f"force feedback needs the estimated contact wrench of frame {frame!r}; {known}")
+        local = self.config.contact.axes == "local"
+        R = self.chain.contact_placement(np.nan_to_num(estimate.q))[0] if local else np.eye(3)
+        return np.concatenate([estimate.q, estimate.v, self.problem.in_contact_axes(wrench, R)])
+
+    def _torque(self, time: float, x: Array | None, state: MpcState) -> tuple[Array, str]:
+        if state.plan is not None:
+            torque = torque_from(state.plan, time, x, self.config)
+            if torque is not None and all_finite(torque):
+                return torque, "old plan" if state.failures else "plan"
+        return self._safe.at(state.data, state.q, state.v), "gravity and damping"
+
+
+def kernel_model(problem: MpcProblem) -> _mpc.Model:
+    """The compiled model of a problem."""
+    contact = problem.config.contact
+    surface = problem.R_world_surface if contact.axes == "surface" else None
+    return _mpc.Model(
+        problem.config.kind,
+        problem.m,
+        contact.axes,
+        surface_rotation=surface,
+        torque_bandwidth=problem.config.torque_bandwidth,
+        baumgarte=contact.baumgarte,
+        integrator=contact.integrator,
+    )
+
+
+def kernel_solver(problem: MpcProblem, chain: _mpc.Chain, model: _mpc.Model) -> _mpc.Solver:
+    """A compiled solver of a problem; its nodes have neither weights nor references yet."""
+    config = problem.config
+    return _mpc.Solver(
+        chain, model, config.horizon, config.dt, regularisation=config.regularisation, bounds=config.bounds.any
+    )
+
+
+def nodes_of(solver: _mpc.Solver) -> NodeParameters:
+    """The solver's nodes as the protocol that problems write to."""
+    return solver.nodes

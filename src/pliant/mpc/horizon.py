@@ -1,0 +1,97 @@
+"""What the task asks at each node of the horizon."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pliant.errors import SignalError
+from pliant.signals import Preview, Reference
+from pliant.spatial import Array, all_finite
+
+
+@dataclass(frozen=True, slots=True)
+class HorizonReference:
+    """References at the N + 1 nodes, world axes."""
+
+    position: Array
+    """(N+1, 3) m"""
+    rotation: Array | None
+    """(N+1, 3, 3) R_world_tool; None leaves the orientation free"""
+    velocity: Array
+    """(N+1, 6) m/s, rad/s"""
+    wrench: Array
+    """(N+1, 6) desired reaction of the environment, N, N·m"""
+    posture: Array | None
+    """(N+1, n) rad"""
+    phase: tuple[str, ...]
+    """(N+1,) name of the phase of each node's own time"""
+
+
+def along_horizon(reference: Reference, frame: str, horizon: int, dt: float) -> HorizonReference:
+    """The reference at the nodes of a horizon that begins now.
+
+    A preview is sampled at each node's own time, its phase too, so that a phase switch rolls through the horizon node
+    by node. Without a preview the task goes on with its velocity, in its present phase.
+
+    Args:
+        reference: of now.
+        frame: tracked frame.
+        horizon: N.
+        dt: s between nodes.
+
+    Raises:
+        SignalError: there is no task for the frame, or a value is not finite.
+    """
+    if reference.preview is not None:
+        found = _sampled(reference.preview, reference.time + dt * np.arange(horizon + 1, dtype=np.float64))
+    else:
+        found = _extrapolated(reference, frame, horizon, dt)
+    if not all_finite(
+        found.position, found.velocity, found.wrench, *(() if found.rotation is None else (found.rotation,))
+    ):
+        raise SignalError(f"the reference of frame {frame!r} must be finite")
+    return found
+
+
+def _sampled(preview: Preview, times: Array) -> HorizonReference:
+    """Vectors between two samples are interpolated; orientations and phases hold until the next sample."""
+    phase = preview.phase or ("",) * len(preview.time)
+    if len(preview.time) == len(times) and np.abs(preview.time - times).max() < 1e-9:
+        return HorizonReference(
+            preview.position, preview.rotation, preview.velocity, preview.wrench, preview.posture, phase
+        )
+    at = np.clip(np.searchsorted(preview.time, times + 1e-9, side="right") - 1, 0, len(preview.time) - 1)
+    after = np.minimum(at + 1, len(preview.time) - 1)
+    span = np.maximum(preview.time[after] - preview.time[at], 1e-12)
+    share = np.clip((times - preview.time[at]) / span, 0.0, 1.0)[:, None]
+
+    def between(values: Array) -> Array:
+        return values[at] + share * (values[after] - values[at])
+
+    return HorizonReference(
+        position=between(preview.position),
+        rotation=preview.rotation[at],
+        velocity=between(preview.velocity),
+        wrench=between(preview.wrench),
+        posture=None if preview.posture is None else between(preview.posture),
+        phase=tuple(phase[index] for index in at),
+    )
+
+
+def _extrapolated(reference: Reference, frame: str, horizon: int, dt: float) -> HorizonReference:
+    task = next((task for task in reference.tasks if task.frame == frame), None)
+    if task is None:
+        got = [task.frame for task in reference.tasks]
+        raise SignalError(f"the reference must have a task for frame {frame!r}, it has {got}")
+    count = horizon + 1
+    elapsed = dt * np.arange(count)[:, None]
+    return HorizonReference(
+        position=task.position + elapsed * task.velocity[:3],
+        rotation=None if task.rotation is None else np.tile(task.rotation, (count, 1, 1)),
+        velocity=np.tile(task.velocity, (count, 1)),
+        wrench=np.tile(task.wrench, (count, 1)),
+        posture=None if reference.posture is None else np.tile(reference.posture, (count, 1)),
+        phase=(reference.phase,) * count,
+    )

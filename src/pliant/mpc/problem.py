@@ -1,0 +1,245 @@
+"""The optimal control problem of a predictive controller for one robot: dimensions, checks, and what its nodes hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.errors import ConfigError, RobotError, ShapeError, options
+from pliant.mpc.config import MpcConfig
+from pliant.mpc.horizon import HorizonReference
+from pliant.mpc.nodes import NodeParameters, PlainNodes
+from pliant.robot import Robot
+from pliant.spatial import Array, frame_with_z_along
+
+AXES_OF_DIMENSION = {1: (2,), 3: (0, 1, 2), 6: (0, 1, 2, 3, 4, 5)}
+
+
+@dataclass(frozen=True)
+class MpcProblem:
+    """A configuration bound to a robot. Make it with `problem_from_robot` or `problem_from_model`."""
+
+    config: MpcConfig
+    name: str
+    """of the robot"""
+    model: pin.Model
+    driven: tuple[int, ...]
+    """(nu,) index in v of each driven joint; a free base is not driven"""
+    torque_limit: Array
+    """(nu,) N·m"""
+    R_world_surface: Array
+    """(3, 3), its third column is the normal"""
+    weights: dict[str, dict[str, Array]]
+    """phase → name in NodeParameters → (N+1, size)"""
+
+    @property
+    def m(self) -> int:
+        """Dimension of the contact force; 0 in free motion."""
+        return 0 if self.config.kind == "free" else self.config.contact.dimension
+
+    @property
+    def nu(self) -> int:
+        """Number of driven joints."""
+        return len(self.driven)
+
+    @property
+    def contact_frame(self) -> str:
+        return self.config.contact.frame or self.config.frame
+
+    def nodes(self) -> PlainNodes:
+        """Parameters of the horizon as plain arrays, constants filled in."""
+        nodes = PlainNodes.zeros(self.config.horizon + 1, self.model.nq, self.model.nv, self.nu, self.m)
+        self.write_constants(nodes)
+        return nodes
+
+    def write_constants(self, nodes: NodeParameters) -> None:
+        """Writes what stays the same during a run: contact stiffness and damping, bounds."""
+        nodes.stiffness[...] = _filled(self.config.contact.stiffness, self.m)
+        nodes.damping[...] = _filled(self.config.contact.damping, self.m)
+        bounds = self.config.bounds
+        if bounds.torque:
+            nodes.torque_lower[...] = -self.torque_limit
+            nodes.torque_upper[...] = self.torque_limit
+        if self.m and bounds.force_max is not None:
+            normal = 0 if self.m == 1 else 2
+            nodes.force_lower[:, normal] = 0.0
+            nodes.force_upper[:, normal] = bounds.force_max
+        if bounds.friction is not None:
+            nodes.friction[...] = bounds.friction
+
+    def write_phases(self, nodes: NodeParameters, phases: Sequence[str], *, oriented: bool = True) -> None:
+        """Gives each node the weights and the contact of its own phase.
+
+        Args:
+            nodes: written to.
+            phases: (N+1,) names.
+            oriented: whether the task has an orientation; without one its cost is off.
+
+        Raises:
+            ConfigError: a phase that the configuration does not have.
+        """
+        for node, phase in enumerate(phases):
+            if phase not in self.weights:
+                raise ConfigError(f"no costs for phase {phase!r}; {options(self.weights, phase)}")
+            for name, table in self.weights[phase].items():
+                getattr(nodes, name)[node] = table[node]
+            nodes.contact_active[node] = self.m > 0 and self.config.phases[phase].contact
+        if not oriented:
+            nodes.rotation_weight[...] = 0.0
+
+    def write_references(self, nodes: NodeParameters, reference: HorizonReference, posture: Array) -> None:
+        """Gives each node its references.
+
+        Args:
+            nodes: written to.
+            reference: at the N + 1 nodes.
+            posture: (nq,) rad, where the reference has none.
+        """
+        nq = self.model.nq
+        use = self.config.posture == "reference" and reference.posture is not None
+        nodes.state_reference[:, :nq] = reference.posture if use else posture
+        nodes.translation_reference[...] = reference.position
+        if reference.rotation is not None:
+            nodes.rotation_reference[...] = reference.rotation
+        if self.config.task_velocity:
+            nodes.velocity_reference[...] = reference.velocity
+        if self.m:
+            R = np.eye(3) if reference.rotation is None else reference.rotation
+            nodes.force_reference[...] = self.in_contact_axes(reference.wrench, R)
+
+    def in_contact_axes(self, wrench: Array, R_world_contact: Array) -> Array:
+        """Components of wrenches that the model knows.
+
+        Args:
+            wrench: (..., 6) world axes, N and N·m.
+            R_world_contact: (..., 3, 3) orientation of the contact frame, for axes 'local'.
+
+        Returns:
+            (..., m) contact axes.
+        """
+        axes = self.config.contact.axes
+        if axes != "world":
+            R = R_world_contact if axes == "local" else self.R_world_surface
+            parts = wrench.reshape(*wrench.shape[:-1], 2, 3)
+            wrench = np.einsum("...ij,...ki->...kj", R, parts).reshape(wrench.shape)
+        return wrench[..., list(AXES_OF_DIMENSION[self.m])] if self.m else wrench[..., :0]
+
+
+def problem_from_robot(robot: Robot, config: MpcConfig) -> MpcProblem:
+    """Binds a configuration to a robot on a fixed base, branched or not.
+
+    Raises:
+        RobotError: a frame that the robot does not have.
+        ConfigError: activations that do not fit the robot; a stiffness or damping outside the integrator's range.
+    """
+    for frame in (config.frame, config.contact.frame or config.frame):
+        robot.frame_id(frame)
+    return _bound(config, robot.name, robot.model, tuple(range(robot.n)), robot.torque_limit, robot.home)
+
+
+def problem_from_model(model: pin.Model, config: MpcConfig, posture: Array) -> MpcProblem:
+    """Binds a configuration to any pinocchio model, for the crocoddyl bridge; a free-flyer at its root is not driven.
+
+    Args:
+        model: tree, with or without a free base.
+        config: what to build.
+        posture: (nq,) at which the contact's stiffness is checked.
+
+    Raises:
+        RobotError: a frame that the model does not have.
+        ShapeError: a posture of another size.
+        ConfigError: as `problem_from_robot`.
+    """
+    for frame in (config.frame, config.contact.frame or config.frame):
+        if not model.existFrame(frame):
+            names = [entry.name for entry in model.frames]
+            raise RobotError(f"the model {model.name!r} has no frame {frame!r}; {options(names, frame)}")
+    if posture.shape != (model.nq,):
+        raise ShapeError(f"the posture must have {model.nq} entries, got shape {posture.shape}")
+    base = model.joints[1].nv if model.njoints > 1 and model.joints[1].shortname() == "JointModelFreeFlyer" else 0
+    limit = np.array(model.upperEffortLimit)[base:]
+    limit = np.where(limit > 0.0, limit, np.inf)
+    return _bound(config, model.name, model, tuple(range(base, model.nv)), limit, posture)
+
+
+def _bound(
+    config: MpcConfig, name: str, model: pin.Model, driven: tuple[int, ...], limit: Array, posture: Array
+) -> MpcProblem:
+    _check_contact_range(config, model, posture)
+    R = frame_with_z_along(config.contact.normal)
+    weights = {phase: _weights(config, phase, model.nv, len(driven)) for phase in config.phases}
+    return MpcProblem(config, name, model, driven, limit, R, weights)
+
+
+def _weights(config: MpcConfig, phase: str, nv: int, nu: int) -> dict[str, Array]:
+    costs = config.phases[phase].over(config.costs)
+    m = 0 if config.kind == "free" else config.contact.dimension
+
+    def along(name: str, size: int) -> Array:
+        return getattr(costs, name).along(config.horizon, size, config.dt, f"{name} (phase {phase!r})")
+
+    table = {
+        "state_weight": np.hstack([along("posture", nv), along("joint_velocity", nv)]),
+        "torque_gravity_weight": along("torque", nu),
+        "translation_weight": along("translation", 3),
+        "rotation_weight": along("rotation", 3),
+        "velocity_weight": along("velocity", 6),
+    }
+    if config.kind == "torque_feedback":
+        table["control_gravity_weight"] = along("unfiltered_torque", nu)
+    if m:
+        table["force_weight"] = along("force", m)
+    if config.kind == "force_feedback":
+        table["force_rate_weight"] = along("force_rate", m)
+    return table
+
+
+def _check_contact_range(config: MpcConfig, model: pin.Model, posture: Array) -> None:
+    """The sampled force state must be stable: see docs/mpc.md for the two conditions."""
+    if config.kind != "force_feedback":
+        return
+    contact, dt = config.contact, config.dt
+    inertia = _task_inertia(config, model, posture)
+    rows = zip(_filled(contact.stiffness, contact.dimension), _filled(contact.damping, contact.dimension), strict=True)
+    for axis, (K, B) in enumerate(rows):
+        if contact.integrator == "exponential":
+            stiffest = float(inertia[axis]) / dt**2
+            if stiffest < K:
+                raise ConfigError(
+                    f"contact.stiffness of axis {axis}: the exponential integrator needs K dt² ≤ Λ, got K = {K:g} with"
+                    f" dt = {dt:g} s and Λ = {inertia[axis]:.3g} (K at most {stiffest:.3g}); shorten dt"
+                )
+        elif K * dt >= B or B * dt >= 2.0 * float(inertia[axis]) + 0.5 * K * dt**2:
+            raise ConfigError(
+                f"contact axis {axis}: the Euler integrator needs K dt < B and B dt < 2 Λ + K dt²/2, got K = {K:g}, B ="
+                f" {B:g}, dt = {dt:g} s, Λ = {inertia[axis]:.3g}; use integrator = 'exponential' or a shorter dt"
+            )
+
+
+def _task_inertia(config: MpcConfig, model: pin.Model, posture: Array) -> Array:
+    """(m,) inertia that each axis of the contact feels, kg and kg m², in axes nearly those of the contact."""
+    data = model.createData()
+    pin.computeJointJacobians(model, data, posture)
+    pin.updateFramePlacements(model, data)
+    frame = model.getFrameId(config.contact.frame or config.frame)
+    local = config.contact.axes == "local"
+    J_world = pin.getFrameJacobian(model, data, frame, pin.LOCAL if local else pin.LOCAL_WORLD_ALIGNED)
+    R = frame_with_z_along(config.contact.normal).T if config.contact.axes == "surface" else np.eye(3)
+    J = np.vstack([R @ J_world[:3], R @ J_world[3:]])
+    upper = np.triu(pin.crba(model, data, posture))
+    M = upper + np.triu(upper, 1).T
+    mobility = np.einsum("ij,ji->i", J, np.linalg.solve(M, J.T))[list(AXES_OF_DIMENSION[config.contact.dimension])]
+    return 1.0 / np.maximum(mobility, 1e-9)
+
+
+def _filled(values: Sequence[float], size: int) -> Array:
+    """(size,) values, the last one repeated."""
+    if size == 0:
+        return np.zeros(0)
+    if not all(math.isfinite(value) for value in values):
+        raise ConfigError(f"contact stiffness and damping must be finite, got {list(values)}")
+    return np.pad(np.array(values, dtype=np.float64), (0, size - len(values)), mode="edge")
