@@ -8,10 +8,10 @@ from pliant.mpc.config import Bounds, ClassicalMpc, Contact, ForceFeedbackMpc, M
 from pliant.mpc.controller import MpcController, MpcState
 from pliant.mpc.costs import Costs, Phase, Term
 from pliant.mpc.problem import MpcProblem, problem_from_model, problem_from_robot
-from pliant.mpc.registry import MPC_CONTROLLERS
+from pliant.mpc.registry import CONTROLLERS
 
 __all__ = [
-    "MPC_CONTROLLERS",
+    "CONTROLLERS",
     "Bounds",
     "ClassicalMpc",
     "Contact",

@@ -10,7 +10,8 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from pliant.mpc.costs import Costs, Described, Phase, Term
+from pliant.entries import ControllerConfig
+from pliant.mpc.costs import Costs, Phase, Term
 
 Kind = Literal["force_feedback", "classical", "torque_feedback", "free", "naive_viscoelastic"]
 Axes = Literal["local", "world", "surface"]
@@ -18,7 +19,7 @@ Axes = Literal["local", "world", "surface"]
 _PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
 
 
-class Contact(Described):
+class Contact(ControllerConfig):
     """Where and how the robot touches."""
 
     frame: str | None = Field(default=None, description="contact frame; None: the tool frame")
@@ -27,19 +28,29 @@ class Contact(Described):
     normal: tuple[float, float, float] = Field(
         default=(0.0, 0.0, 1.0), description="outward normal of the surface in the world, for axes 'surface'"
     )
-    stiffness: tuple[float, ...] = Field(default=(1e3,), description="K per axis, N/m (N·m/rad); the last repeats")
-    damping: tuple[float, ...] = Field(default=(1e2,), description="B per axis, N s/m (N·m s/rad); the last repeats")
+    stiffness: tuple[float, ...] = Field(
+        default=(1e3,), description="K per axis; the last one repeats", json_schema_extra={"unit": "N/m, N·m/rad"}
+    )
+    damping: tuple[float, ...] = Field(
+        default=(1e2,), description="B per axis; the last one repeats", json_schema_extra={"unit": "N·s/m, N·m·s/rad"}
+    )
     integrator: Literal["euler", "exponential"] = Field(
         default="euler", description="of the force: 'euler' [FFMPC] eq. 24, 'exponential' for stiff contacts"
     )
-    baumgarte: tuple[float, float] = Field(default=(0.0, 0.0), description="rigid contact: 1/s² and 1/s")
+    baumgarte: tuple[float, float] = Field(
+        default=(0.0, 0.0),
+        description="rigid contact: position and velocity gain of Baumgarte",
+        json_schema_extra={"unit": "1/s², 1/s"},
+    )
 
 
-class Bounds(Described):
+class Bounds(ControllerConfig):
     """Inequalities. With none of them set the solver takes its faster path."""
 
     torque: bool = Field(default=False, description="keep the control within the robot's torque limits")
-    force_max: float | None = Field(default=None, gt=0.0, description="0 ≤ normal force ≤ force_max, N")
+    force_max: float | None = Field(
+        default=None, gt=0.0, description="0 ≤ normal force ≤ force_max", json_schema_extra={"unit": "N"}
+    )
     friction: float | None = Field(
         default=None, gt=0.0, description="cone: tangential ≤ friction · normal, dimension 3, 6"
     )
@@ -49,18 +60,24 @@ class Bounds(Described):
         return self.torque or self.force_max is not None or self.friction is not None
 
 
-class MpcConfig(Described):
+class MpcConfig(ControllerConfig):
     """A predictive controller."""
 
     kind: Kind = Field(default="force_feedback", description="which model predicts")
     frame: str = Field(default="tool", description="frame whose pose is tracked")
     horizon: int = Field(default=5, ge=1, le=200, description="N, running nodes")
-    dt: float = Field(default=3e-3, gt=0.0, le=0.1, description="step of the horizon, s")
-    period: float = Field(default=2e-3, gt=0.0, le=0.1, description="a new solve every so often, s")
+    dt: float = Field(default=3e-3, gt=0.0, le=0.1, description="step of the horizon", json_schema_extra={"unit": "s"})
+    period: float = Field(
+        default=2e-3, gt=0.0, le=0.1, description="time from solve to solve", json_schema_extra={"unit": "s"}
+    )
     max_iterations: int = Field(default=8, ge=1, le=1000, description="SQP steps per solve")
     tolerance: float = Field(default=1e-4, gt=0.0, description="KKT residual at which a solve ends")
-    time_budget: float | None = Field(default=None, gt=0.0, description="wall time after which no iteration starts, s")
-    deadline: float | None = Field(default=None, gt=0.0, description="wall time of a solve that counts as missed, s")
+    time_budget: float | None = Field(
+        default=None, gt=0.0, description="wall time after which no iteration starts", json_schema_extra={"unit": "s"}
+    )
+    deadline: float | None = Field(
+        default=None, gt=0.0, description="wall time of a solve that counts as missed", json_schema_extra={"unit": "s"}
+    )
     regularisation: float = Field(default=1e-9, ge=0.0, description="added to the diagonal of the Hessian")
     between: Literal["hold", "riccati"] = Field(
         default="hold", description="between two solves: hold the torque, or the solver's own state feedback"
@@ -72,8 +89,12 @@ class MpcConfig(Described):
         default=True, description="velocity cost about the task's velocity; false: about zero, as in [FFMPC] eq. 25.5"
     )
     contact: Contact = Contact()
-    torque_bandwidth: float = Field(default=50.0, gt=0.0, description="f_c of the actuation in torque feedback, Hz")
-    fallback_damping: float = Field(default=5.0, ge=0.0, description="joint damping when no plan is left, N·m s/rad")
+    torque_bandwidth: float = Field(
+        default=50.0, gt=0.0, description="f_c of the actuation in torque feedback", json_schema_extra={"unit": "Hz"}
+    )
+    fallback_damping: float = Field(
+        default=5.0, ge=0.0, description="joint damping when no plan is left", json_schema_extra={"unit": "N·m·s/rad"}
+    )
     max_gap: float = Field(default=1e-2, gt=0.0, description="a solution whose dynamics are open by more is not used")
     bounds: Bounds = Bounds()
     costs: Costs = Costs()

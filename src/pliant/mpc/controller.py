@@ -74,6 +74,11 @@ class MpcController(Controller[MpcState]):
         self._safe = SafeTorque(robot.model, config.fallback_damping)
         self._limit = robot.torque_limit
 
+    @property
+    def channels(self) -> Mapping[str, diagnostics.DiagnosticChannel]:
+        """Name → unit of every channel in `Command.diagnostics`."""
+        return diagnostics.CHANNELS
+
     def init(self, estimate: Estimate) -> MpcState:
         """State before the first step.
 

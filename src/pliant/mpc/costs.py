@@ -7,22 +7,19 @@ w, `activation` is a, which is squared.
 from __future__ import annotations
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import Field, field_validator
 
+from pliant.entries import ControllerConfig
 from pliant.errors import ConfigError
 from pliant.spatial import Array
 
 
-class Described(BaseModel):
-    """Base of the descriptions in this folder: frozen, unknown keys are errors, not-a-number is refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
-
-
-class Term(Described):
+class Term(ControllerConfig):
     """One quadratic cost term."""
 
-    weight: float = Field(default=0.0, ge=0.0, description="scalar weight w of the running nodes")
+    weight: float = Field(
+        default=0.0, ge=0.0, description="scalar weight w of the running nodes, in the unit of the term"
+    )
     activation: tuple[float, ...] = Field(
         default=(1.0,), min_length=1, description="a per component, squared; the last one counts for all that follow"
     )
@@ -67,35 +64,87 @@ class Term(Described):
         return scalar[:, None] * squared[None, :]
 
 
-class Costs(Described):
-    """The cost terms that count in every phase unless the phase has its own."""
+class Costs(ControllerConfig):
+    """The cost terms that count in every phase unless the phase has its own; the unit is that of the weight."""
 
-    posture: Term = Field(default=Term(), description="joint positions about the posture reference, 1/rad²")
-    joint_velocity: Term = Field(default=Term(), description="joint velocities about zero, s²/rad²")
-    torque: Term = Field(
-        default=Term(), description="torque about g(q) − Jᵀλ, 1/(N·m)²; in torque feedback the state τ"
+    posture: Term = Field(
+        default=Term(), description="joint positions about the posture reference", json_schema_extra={"unit": "1/rad²"}
     )
-    unfiltered_torque: Term = Field(default=Term(), description="w about g(q) − Jᵀλ, torque feedback only, 1/(N·m)²")
-    translation: Term = Field(default=Term(), description="tool position, world axes, 1/m²")
-    rotation: Term = Field(default=Term(), description="tool orientation log(R_refᵀ R), 1/rad²")
-    velocity: Term = Field(default=Term(), description="tool twist, world axes, s²/m² and s²/rad²")
-    force: Term = Field(default=Term(), description="contact force, contact axes, 1/N²")
-    force_rate: Term = Field(default=Term(), description="rate of the contact force, force feedback only, s²/N²")
+    joint_velocity: Term = Field(
+        default=Term(), description="joint velocities about zero", json_schema_extra={"unit": "s²/rad²"}
+    )
+    torque: Term = Field(
+        default=Term(),
+        description="torque about g(q) − Jᵀλ; in torque feedback the state τ",
+        json_schema_extra={"unit": "1/(N·m)²"},
+    )
+    unfiltered_torque: Term = Field(
+        default=Term(), description="w about g(q) − Jᵀλ, torque feedback only", json_schema_extra={"unit": "1/(N·m)²"}
+    )
+    translation: Term = Field(
+        default=Term(), description="tool position, world axes", json_schema_extra={"unit": "1/m²"}
+    )
+    rotation: Term = Field(
+        default=Term(), description="tool orientation log(R_refᵀ R)", json_schema_extra={"unit": "1/rad²"}
+    )
+    velocity: Term = Field(
+        default=Term(), description="tool twist, world axes", json_schema_extra={"unit": "s²/m², s²/rad²"}
+    )
+    force: Term = Field(default=Term(), description="contact force, contact axes", json_schema_extra={"unit": "1/N²"})
+    force_rate: Term = Field(
+        default=Term(),
+        description="rate of the contact force, force feedback only",
+        json_schema_extra={"unit": "s²/N²"},
+    )
 
 
-class Phase(Described):
+class Phase(ControllerConfig):
     """What is different in one phase of a task. Terms that are None are the common ones."""
 
     contact: bool = Field(default=False, description="whether the model is in contact")
-    posture: Term | None = None
-    joint_velocity: Term | None = None
-    torque: Term | None = None
-    unfiltered_torque: Term | None = None
-    translation: Term | None = None
-    rotation: Term | None = None
-    velocity: Term | None = None
-    force: Term | None = None
-    force_rate: Term | None = None
+    posture: Term | None = Field(
+        default=None,
+        description="joint positions about the posture reference; none: the common one",
+        json_schema_extra={"unit": "1/rad²"},
+    )
+    joint_velocity: Term | None = Field(
+        default=None,
+        description="joint velocities about zero; none: the common one",
+        json_schema_extra={"unit": "s²/rad²"},
+    )
+    torque: Term | None = Field(
+        default=None,
+        description="torque about g(q) − Jᵀλ; in torque feedback the state τ; none: the common one",
+        json_schema_extra={"unit": "1/(N·m)²"},
+    )
+    unfiltered_torque: Term | None = Field(
+        default=None,
+        description="w about g(q) − Jᵀλ, torque feedback only; none: the common one",
+        json_schema_extra={"unit": "1/(N·m)²"},
+    )
+    translation: Term | None = Field(
+        default=None, description="tool position, world axes; none: the common one", json_schema_extra={"unit": "1/m²"}
+    )
+    rotation: Term | None = Field(
+        default=None,
+        description="tool orientation log(R_refᵀ R); none: the common one",
+        json_schema_extra={"unit": "1/rad²"},
+    )
+    velocity: Term | None = Field(
+        default=None,
+        description="tool twist, world axes; none: the common one",
+        json_schema_extra={"unit": "s²/m², s²/rad²"},
+    )
+    force: Term | None = Field(
+        default=None,
+        description="contact force, contact axes; none: the common one",
+        json_schema_extra={"unit": "1/N²"},
+    )
+    force_rate: Term | None = Field(
+        default=None,
+        description="rate of the contact force, force feedback only; none: the common one",
+        json_schema_extra={"unit": "s²/N²"},
+    )
 
     def over(self, common: Costs) -> Costs:
         """The costs of this phase."""

@@ -1,4 +1,4 @@
-"""The same problems as crocoddyl shooting problems, for mim-solvers and crocoddyl's own solvers (extra `pliant[crocoddyl]`).
+"""The same problems as crocoddyl shooting problems, for mim-solvers and crocoddyl's solvers (`pliant[crocoddyl]`).
 
 For interoperability, for robots that the kernel cannot take (branched, more than 8 joints, free base), and as a second
 opinion. Models run in Python: leave the number of threads of a shooting problem at one. Copy results with
@@ -49,7 +49,9 @@ def shooting_problem(
     actions: list[Any] = []
     for index in range(count):
         terminal = index == count - 1
-        node = _kernel_node(problem, chain, terminal) if chain is not None else PinocchioNode(problem, terminal=terminal)
+        node = (
+            _kernel_node(problem, chain, terminal) if chain is not None else PinocchioNode(problem, terminal=terminal)
+        )
         copy_nodes(nodes, node.parameters, slice(index, index + 1))
         actions.append(NodeAction(problem, node, terminal=terminal, constrained=constraints))
     return ShootingProblem(np.array(x0), actions[:-1], actions[-1])
@@ -138,7 +140,9 @@ class ManifoldState(StateAbstract):  # type: ignore[misc]
         return np.concatenate([pin.neutral(self._model), np.zeros(self.nx - self._nq)])
 
     def rand(self) -> Array:
-        return np.concatenate([pin.randomConfiguration(self._model), np.random.default_rng().normal(size=self.nx - self._nq)])
+        return np.concatenate(
+            [pin.randomConfiguration(self._model), np.random.default_rng().normal(size=self.nx - self._nq)]
+        )
 
     def diff(self, x0: Array, x1: Array) -> Array:
         nq = self._nq

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,7 +23,14 @@ STATUS_CODES: Mapping[str, int] = {
 SOURCE_CODES: Mapping[str, int] = {"plan": 0, "old plan": 1, "gravity and damping": 2}
 """Code of channel mpc/source: where the torque came from"""
 
-UNITS: Mapping[str, str] = {
+
+class DiagnosticChannel(NamedTuple):
+    """What a diagnostic is."""
+
+    unit: str
+
+
+_UNITS = {
     "mpc/iterations": "1",
     "mpc/kkt": "1",
     "mpc/cost": "1",
@@ -36,7 +44,9 @@ UNITS: Mapping[str, str] = {
     "mpc/predicted_path": "m",
     "mpc/predicted_force": "N, N·m",
 }
-"""channel → unit"""
+
+CHANNELS: Mapping[str, DiagnosticChannel] = {name: DiagnosticChannel(unit) for name, unit in _UNITS.items()}
+"""name → what it is"""
 
 
 def of_solution(

@@ -22,7 +22,7 @@ class ContactMotion:
     velocity_q: Array
     """(m, nv) ∂(J v)/∂q"""
     acceleration: Array
-    """(m,) classical acceleration J v̇ + J̇ v"""
+    """(m,) d(J v)/dt = J v̇ + J̇ v: in axes that stand still the classical acceleration, in the frame's own the spatial one"""
     acceleration_q: Array
     """(m, nv), at constant v̇"""
     acceleration_v: Array
@@ -47,13 +47,12 @@ class ContactGeometry:
         )
         twist = pin.getFrameVelocity(model, data, self.frame, pin.LOCAL)
         spatial = pin.getFrameAcceleration(model, data, self.frame, pin.LOCAL)
-        acceleration = np.array(spatial.vector)
-        acceleration[:3] += np.cross(twist.angular, twist.linear)  # classical from spatial
-        W, V = skew(twist.angular), skew(twist.linear)
-        a_q[:3] += W @ v_q[:3] - V @ v_q[3:]
-        a_v[:3] += W @ J[:3] - V @ J[3:]
-        velocity = np.array(twist.vector)
+        velocity, acceleration = np.array(twist.vector), np.array(spatial.vector)
         if self.axes != "local":  # the axes stand still while the frame turns with J[3:] dq
+            W, V = skew(twist.angular), skew(twist.linear)
+            acceleration[:3] += np.cross(twist.angular, twist.linear)  # classical from spatial
+            a_q[:3] += W @ v_q[:3] - V @ v_q[3:]
+            a_v[:3] += W @ J[:3] - V @ J[3:]
             v_q -= _turning(velocity, J[3:])
             a_q -= _turning(acceleration, J[3:])
         A = self.rotation(data)

@@ -1,7 +1,8 @@
-"""One node of the problem on any pinocchio model: trees and free bases for the bridge, and a second opinion on the kernel.
+"""One node of the problem on any pinocchio model: trees and free bases for the bridge, a second opinion on the kernel.
 
-The same mathematics as the compiled kernel, written with pinocchio's analytic derivatives: [FFMPC] eq. 4–8 (classical), 11–14
-(torque feedback), 16–17 (naive visco-elastic), 20–24 (force feedback); costs eq. 25–29 with the full Gauss–Newton Hessian.
+The same mathematics as the compiled kernel, written with pinocchio's analytic derivatives: [FFMPC] eq. 4–8
+(classical), 11–14 (torque feedback), 16–17 (naive visco-elastic), 20–24 (force feedback); costs eq. 25–29 with the full
+Gauss–Newton Hessian.
 """
 
 from __future__ import annotations
@@ -150,10 +151,10 @@ class PinocchioNode:
         self._kinematics(q, v, np.zeros(nv))
         still = self._contact.motion(self.model, self.data)
         error, error_q = self._deflection(still.J) if kp > 0.0 else (np.zeros(m), np.zeros((m, nv)))
-        M = np.linalg.inv(M_inverse)
+        M = _solve(M_inverse, np.eye(nv))
         system = np.block([[M, -still.J.T], [still.J, np.zeros((m, m))]])
         wanted = -(still.acceleration + kd * still.velocity + kp * error)
-        solution = np.linalg.solve(system, np.concatenate([drive - bias, wanted]))
+        solution = _solve(system, np.concatenate([drive - bias, wanted]))
         a, force = solution[:nv], solution[nv:]
         self._kinematics(q, v, a)
         motion = self._contact.motion(self.model, self.data)
@@ -162,8 +163,8 @@ class PinocchioNode:
         wanted_x[:, :nv] = -(motion.acceleration_q + kd * motion.velocity_q + kp * error_q)
         wanted_x[:, nv : 2 * nv] = -(motion.acceleration_v + kd * motion.J)
         right_x = np.vstack([torque_x - self._inverse_dynamics_x(q, v, a, wrench), wanted_x])
-        by_x = np.linalg.solve(system, right_x)
-        by_u = np.linalg.solve(system, np.vstack([torque_u, np.zeros((m, self.nu))]))
+        by_x = _solve(system, right_x)
+        by_u = _solve(system, np.vstack([torque_u, np.zeros((m, self.nu))]))
         none = np.zeros((m, self.ndx)), np.zeros((m, self.nu))
         return _Dynamics(a, by_x[:nv], by_u[:nv], force, by_x[nv:], by_u[nv:], np.zeros(m), *none)
 
@@ -300,7 +301,7 @@ class PinocchioNode:
         """M⁻¹ (nv, nv) and the bias h (nv,)."""
         upper = np.triu(pin.crba(self.model, self.data, q))
         bias = np.array(pin.nonLinearEffects(self.model, self.data, q, v))
-        return np.linalg.inv(upper + np.triu(upper, 1).T), bias
+        return _solve(upper + np.triu(upper, 1).T, np.eye(self.model.nv)), bias
 
     def _kinematics(self, q: Array, v: Array, a: Array) -> None:
         pin.computeForwardKinematicsDerivatives(self.model, self.data, q, v, a)
@@ -319,3 +320,7 @@ class PinocchioNode:
     def _deflection(self, J: Array) -> tuple[Array, Array]:
         full = pin.getFrameJacobian(self.model, self.data, self._contact.frame, pin.LOCAL)
         return self._contact.deflection(self.data, self.parameters.anchor_translation[0], J, full)
+
+
+def _solve(A: Array, b: Array) -> Array:
+    return np.asarray(np.linalg.solve(A, b), dtype=np.float64)
