@@ -9,14 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from pliant.entries import ControllerEntry, find_entry
 from pliant.errors import ConfigError
-from pliant.estimation import DirectEstimator
+from pliant.estimation import WrenchEstimator
 from pliant.mpc import CONTROLLERS, MpcConfig, MpcController
 from pliant.references.phases import Lookahead, PhasedSource, TaskPhase
 from pliant.references.shapes import circle
@@ -53,16 +54,26 @@ class Table(Config):
 class Task(Config):
     """What the tool does. Times count from the start of the run."""
 
-    above: float = Field(default=0.02, gt=0.0, description="height over the table where reach ends", json_schema_extra={"unit": "m"})
-    reach: float = Field(default=0.5, gt=0.0, description="end of the motion above the table", json_schema_extra={"unit": "s"})
-    touch: float = Field(default=1.0, gt=0.0, description="end of the descent; contact begins", json_schema_extra={"unit": "s"})
-    pressed: float = Field(default=2.0, gt=0.0, description="end of the ramp of the force", json_schema_extra={"unit": "s"})
+    above: float = Field(
+        default=0.02, gt=0.0, description="height over the table where reach ends", json_schema_extra={"unit": "m"}
+    )
+    reach: float = Field(
+        default=0.5, gt=0.0, description="end of the motion above the table", json_schema_extra={"unit": "s"}
+    )
+    touch: float = Field(
+        default=1.0, gt=0.0, description="end of the descent; contact begins", json_schema_extra={"unit": "s"}
+    )
+    pressed: float = Field(
+        default=2.0, gt=0.0, description="end of the ramp of the force", json_schema_extra={"unit": "s"}
+    )
     circle: float = Field(default=3.0, gt=0.0, description="start of the circle", json_schema_extra={"unit": "s"})
     light: float = Field(default=5.0, gt=0.0, description="force at first contact", json_schema_extra={"unit": "N"})
     force: float = Field(default=50.0, gt=0.0, description="force of the circle", json_schema_extra={"unit": "N"})
     radius: float = Field(default=0.07, gt=0.0, description="of the circle", json_schema_extra={"unit": "m"})
     speed: float = Field(default=3.0, gt=0.0, description="of the circle", json_schema_extra={"unit": "rad/s"})
-    ease: float = Field(default=0.5, gt=0.0, description="time in which the circle starts from rest", json_schema_extra={"unit": "s"})
+    ease: float = Field(
+        default=0.5, gt=0.0, description="time in which the circle starts from rest", json_schema_extra={"unit": "s"}
+    )
     found: bool = Field(default=False, description="contact begins when it is felt, not by the timetable")
 
 
@@ -70,14 +81,24 @@ class PolishingConfig(CaseConfig):
     """One run of the polishing task."""
 
     controller: str = Field(default="force-feedback-mpc", description="name of the controller")
-    robot: str = Field(default="iiwa14", description="catalogue name, or path of a URDF or MJCF file with a frame 'flange'")
-    locked: dict[str, float] = Field(default={"A7": 0.0}, description="joint → angle at which it is fixed", json_schema_extra={"unit": "rad"})
+    robot: str = Field(
+        default="iiwa14", description="catalogue name, or path of a URDF or MJCF file with a frame 'flange'"
+    )
+    locked: dict[str, float] = Field(
+        default={"A7": 0.0}, description="joint → angle at which it is fixed", json_schema_extra={"unit": "rad"}
+    )
     duration: float = Field(default=10.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     period: float = Field(default=1e-3, gt=0.0, description="control period", json_schema_extra={"unit": "s"})
     physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
     table: Table = Table()
     task: Task = Task()
-    control: dict[str, Any] = Field(default={}, description="changes to the controller's parameters, e.g. control.contact.stiffness=[1e4]")
+    preset: Literal["tuned", "paper"] = Field(
+        default="tuned",
+        description="parameters that `control` starts from: tuned for this plant, or the weights of the paper's authors",
+    )
+    control: dict[str, Any] = Field(
+        default={}, description="changes to the controller's parameters, e.g. control.contact.stiffness=[1e4]"
+    )
 
     @property
     def entry(self) -> ControllerEntry[Any]:
@@ -86,11 +107,25 @@ class PolishingConfig(CaseConfig):
 
     def parameters(self) -> MpcConfig:
         """The controller's parameters: its defaults, those of this study, then `control`."""
-        return merged(merged(self.entry.default, TUNED.get(self.controller, {})), self.control)
+        changes = TUNED.get(self.controller, {}) if self.preset == "tuned" else {}
+        return merged(merged(self.entry.default, changes), self.control)
 
 
-TUNED: Mapping[str, Mapping[str, Any]] = {}
-"""controller → changes to its defaults for this plant"""
+_COSTS = {"posture": {"weight": 0.002}, "torque": {"weight": 1e-5}}
+_PLANE = {"translation": {"weight": 50.0, "activation": (1.0, 1.0, 0.0)}}
+_PHASES = {"ramp": _PLANE, "contact": _PLANE, "circle": {"translation": {"weight": 2000.0}}}
+
+TUNED: Mapping[str, Mapping[str, Any]] = {
+    "force-feedback-mpc": {
+        "contact": {"stiffness": (3e3,), "damping": (70.0,)},
+        "costs": {**_COSTS, "force": {"weight": 0.1, "terminal": 0.5}},
+        "phases": _PHASES,
+    },
+    "torque-feedback-mpc": {"costs": _COSTS, "phases": _PHASES},
+    "classical-mpc": {"costs": _COSTS, "phases": _PHASES},
+}
+"""controller → changes to its defaults for this plant, each found by the same sweep of posture, torque and position
+weights; preset "paper" leaves the defaults as they are"""
 
 
 class Polishing(Study[PolishingConfig]):
@@ -98,14 +133,16 @@ class Polishing(Study[PolishingConfig]):
 
     name = "polishing"
     title = "press on a table and draw a circle: classical, torque-feedback and force-feedback MPC"
-    cases: Mapping[str, PolishingConfig] = {"ideal": PolishingConfig(case="ideal")}
+    cases = MappingProxyType({"ideal": PolishingConfig(case="ideal")})
 
-    @property
-    def controllers(self) -> Sequence[str]:
-        return list(CONTROLLERS)
+    controllers = tuple(CONTROLLERS)
 
     def runs(self, case: str, seeds: int | None = None) -> Sequence[PolishingConfig]:
-        return [self.case(case).model_copy(update={"controller": name}) for name in CONTROLLERS]
+        tuned = [self.case(case).model_copy(update={"controller": name}) for name in CONTROLLERS]
+        return [
+            *tuned,
+            *(config.model_copy(update={"preset": "paper", "variant": "paper-weights"}) for config in tuned),
+        ]
 
     def build(self, config: PolishingConfig) -> Experiment:
         robot = Robot.load(config.robot, locked=config.locked, tool=Tool(frame=FRAME)).with_contact(FRAME, BALL_RADIUS)
@@ -124,7 +161,7 @@ class Polishing(Study[PolishingConfig]):
         return Experiment(
             robot=robot,
             plant=plant,
-            estimator=DirectEstimator(robot),
+            estimator=WrenchEstimator(robot),
             source=polishing_source(config, robot, Lookahead(parameters.horizon, parameters.dt)),
             controller=controller,
             channels=tuple(Channel(name, about.unit) for name, about in controller.channels.items()),
@@ -139,10 +176,12 @@ class Polishing(Study[PolishingConfig]):
         force = log[f"truth/{FRAME}/wrench"][:, 2]
         wanted = log[f"reference/{FRAME}/wrench"][:, 2]
         position, reference = log[f"truth/{FRAME}/position"][:, :2], log[f"reference/{FRAME}/position"][:, :2]
-        best = config.controller == "force-feedback-mpc" and config.case == "ideal"
+        best = (config.case, config.controller, config.preset) == ("ideal", "force-feedback-mpc", "tuned")
         return (
             Metric("E_λ", measure.mae(force[circling], wanted[circling]), "N", target=0.5 if best else None),
-            Metric("E_P", 1e3 * measure.mae(position[circling], reference[circling]), "mm", target=1.0 if best else None),
+            Metric(
+                "E_P", 1e3 * measure.mae(position[circling], reference[circling]), "mm", target=1.0 if best else None
+            ),
             Metric("λ_max", measure.peak(force[circling]), "N"),
             Metric("t_break", 100.0 * measure.break_share(force[touching]), "%", target=0.0 if best else None),
             Metric("first contact peak", measure.peak(force[~touching]), "N"),
