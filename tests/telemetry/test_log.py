@@ -18,7 +18,7 @@ from tests.telemetry.ticks import JOINTS, make_tick
 
 @pytest.fixture(scope="module")
 def log() -> Log:
-    with Recorder(None, RunInfo("stack", "figure8", "capped", "lwr4", 3, JOINTS)) as recorder:
+    with Recorder(None, RunInfo("stack", "figure8", "capped", "lwr4", 3, JOINTS, (50.0,) * 7)) as recorder:
         for k in range(40):
             recorder(make_tick(k))
     return recorder.log()
@@ -92,5 +92,7 @@ def test_metrics_of_a_log_come_from_the_true_signals(log: Log) -> None:
     force = log["truth/tool/wrench"][:, 2] - log["reference/tool/wrench"][:, 2]
     assert found["tool force rms error z"].value == pytest.approx(np.sqrt(np.mean(force**2)))
     assert found["tool position rmse y"].unit == "mm"
+    steps = np.abs(np.diff(log["command/torque"], axis=0))
+    assert found["torque change per tick"].value == pytest.approx(100.0 * steps.max() / 50.0)
     assert found["time at a torque limit"].value == 100.0
     assert not any(name.startswith("elbow") for name in found)  # the log has no true position of the elbow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 from pathlib import Path
 from typing import Any
@@ -143,6 +144,14 @@ def test_a_filled_template_is_what_the_library_encodes(datatype: str) -> None:
     assert len(made.offsets) == {"Float64": 1, "PointStamped": 3, "PoseStamped": 7, "Float64MultiArray": 8}.get(
         datatype.rsplit("/", 1)[1], 6
     )
+
+
+def test_a_long_array_finds_its_place() -> None:
+    tick = make_tick(0)
+    command = dataclasses.replace(tick.command, diagnostics={"long": np.arange(10_000.0)})
+    with Recorder(None) as recorder:
+        recorder(dataclasses.replace(tick, command=command))
+    np.testing.assert_array_equal(recorder.log()["long"][0], np.arange(10_000.0))
 
 
 def test_a_log_that_was_cut_is_read_up_to_the_cut(path: Path, ticks: list[Tick]) -> None:

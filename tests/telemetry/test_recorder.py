@@ -19,7 +19,14 @@ from pliant.telemetry import Channel, Log, Recorder, RunInfo
 from tests.telemetry.ticks import JOINTS, make_tick
 
 INFO = RunInfo(
-    study="stack", case="figure8", controller="capped", robot="lwr4", seed=7, joints=JOINTS, config={"a": {"b": 1.5}}
+    study="stack",
+    case="figure8",
+    controller="capped",
+    robot="lwr4",
+    seed=7,
+    joints=JOINTS,
+    torque_limits=(176.0,) * 7,
+    config={"a": {"b": 1.5}},
 )
 
 

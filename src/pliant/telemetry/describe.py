@@ -25,8 +25,8 @@ def log_metrics(log: Log) -> tuple[Metric, ...]:
 
     Returns:
         Per frame with a reference: RMSE of the position per axis (true position where the log has it), and the rms
-        error of the force along the axes on which one was asked for. For the torque sent: variation, peak, share of
-        time in which it was clamped.
+        error of the force along the axes on which one was asked for. For the torque sent: variation, peak,
+        largest change per tick, share of time in which it was clamped.
     """
     found: list[Metric] = []
     for frame in frames(log):
@@ -37,6 +37,9 @@ def log_metrics(log: Log) -> tuple[Metric, ...]:
         period = float(np.median(np.diff(time)))
         found.append(Metric("torque variation", metrics.torque_variation(torque, period), "N·m/s"))
         found.append(Metric("peak torque", metrics.peak(torque), "N·m"))
+        if len(log.info.torque_limits) == torque.shape[1]:
+            step = metrics.torque_step_fraction(torque, np.array(log.info.torque_limits))
+            found.append(Metric("torque change per tick", 100.0 * step, "% of limit"))
         clamped = np.any(log["command/clamped"] != 0.0, axis=1)
         found.append(Metric("time at a torque limit", 100.0 * float(np.mean(clamped)), "%"))
     return tuple(found)

@@ -27,6 +27,8 @@ class RunInfo:
     seed: int | None = None
     joints: tuple[str, ...] = ()
     """(n,) joint names; empty: they are numbered"""
+    torque_limits: tuple[float, ...] = ()
+    """(n,) N·m; empty: not known"""
     config: Mapping[str, Any] = field(default_factory=_nothing)
     """the whole typed configuration as plain data (`model_dump(mode="json")`)"""
     version: str = pliant.__version__
@@ -48,7 +50,8 @@ class RunInfo:
             "controller": self.controller,
             "robot": self.robot,
             "seed": "" if self.seed is None else str(self.seed),
-            "joints": json.dumps(list(self.joints)),
+            "joints": json.dumps(list(self.joints), ensure_ascii=False),
+            "torque_limits": json.dumps([float(limit) for limit in self.torque_limits]),
             "config": config,
         }
 
@@ -63,6 +66,7 @@ class RunInfo:
             robot=data.get("robot", ""),
             seed=int(seed) if seed else None,
             joints=tuple(json.loads(data.get("joints", "[]"))),
+            torque_limits=tuple(json.loads(data.get("torque_limits", "[]"))),
             config=json.loads(data.get("config", "{}")),
             version=data.get("version", ""),
         )

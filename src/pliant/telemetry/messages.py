@@ -7,9 +7,10 @@ in it, and a whole block of messages is made by writing columns of numbers where
 from __future__ import annotations
 
 import io
+import itertools
 import math
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -113,19 +114,19 @@ def template(datatype: str, sizes: Sequence[int], frame_id: str = "", labels: Se
     marked = message(datatype, _marks(), sizes, frame_id, names, (_SECONDS, _NANOSECONDS))
     data = encode(datatype, marked)
     offsets: list[int] = []
-    while (at := data.find(struct.pack("<Q", _MARK + len(offsets)))) >= 0:
+    while (at := data.find(struct.pack("<Q", _MARK + len(offsets)), offsets[-1] + 8 if offsets else 0)) >= 0:
         offsets.append(at)
     stamp = data.find(struct.pack("<iI", _SECONDS, _NANOSECONDS))
     return Template(data, tuple(offsets), stamp if stamp >= 0 else None)
 
 
-def _marks() -> list[float]:
-    return [struct.unpack("<d", struct.pack("<Q", _MARK + k))[0] for k in range(4096)]
+def _marks() -> Iterator[float]:
+    return (struct.unpack("<d", struct.pack("<Q", _MARK + k))[0] for k in itertools.count())
 
 
 def message(
     datatype: str,
-    numbers: Sequence[float],
+    numbers: Iterable[float],
     sizes: Sequence[int] = (),
     frame_id: str = "",
     names: Sequence[str] = (),

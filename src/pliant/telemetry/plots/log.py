@@ -44,7 +44,8 @@ def figures(log: Log) -> dict[str, Figure]:
     if "command/torque" in log:
         channel = log.channels["command/torque"]
         time, torque = log.time("command/torque"), log["command/torque"]
-        found["torques"] = joint_torques(time, torque, None, channel.labels, title, log.phases())
+        limits = np.array(log.info.torque_limits) if len(log.info.torque_limits) == torque.shape[1] else None
+        found["torques"] = joint_torques(time, torque, limits, channel.labels, title, log.phases())
     if "reference/posture" in log and log["reference/posture"].shape == log["measurement/q"].shape:
         q = log["truth/q"] if "truth/q" in log else log["measurement/q"]
         names = log.channels["measurement/q"].labels
