@@ -1,0 +1,67 @@
+"""Targets that change at given times or by hand: what planners and exploration start from."""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Sequence
+
+from pliant.errors import ConfigError
+from pliant.interfaces import ReferenceSource
+from pliant.references.source import Started
+from pliant.signals import Estimate, Reference
+
+
+class Schedule(ReferenceSource[Started]):
+    """Swaps whole references at given times.
+
+    Args:
+        entries: (s since the start, reference), times increasing; the first one holds from the start.
+
+    Raises:
+        ConfigError: no entry, or times that do not increase.
+    """
+
+    def __init__(self, entries: Sequence[tuple[float, Reference]]) -> None:
+        self._times = [float(time) for time, _ in entries]
+        self._references = [reference for _, reference in entries]
+        if not entries or any(b <= a for a, b in zip(self._times[:-1], self._times[1:], strict=True)):
+            raise ConfigError(f"a schedule needs entries at increasing times, got {self._times}")
+
+    def init(self, estimate: Estimate) -> Started:
+        return Started(estimate.time)
+
+    def step(self, estimate: Estimate, state: Started) -> tuple[Reference, Started]:
+        # 1 ns: a time that is a sum of periods may fall short of the entry's by rounding
+        index = bisect.bisect_right(self._times, estimate.time - state.time + 1e-9) - 1
+        return at_time(self._references[max(index, 0)], estimate.time), state
+
+
+class Mailbox(ReferenceSource[None]):
+    """Gives the reference that was put in last: the way in for sliders, pendants and other programs.
+
+    `put` may be called from another thread; the loop takes the latest whole reference at its next tick.
+    """
+
+    def __init__(self, reference: Reference) -> None:
+        self._latest = reference
+
+    def put(self, reference: Reference) -> None:
+        """Replaces the reference from the next tick on."""
+        self._latest = reference
+
+    @property
+    def latest(self) -> Reference:
+        """What was put in last; change it with `dataclasses.replace` and put it back."""
+        return self._latest
+
+    def init(self, estimate: Estimate) -> None:
+        return None
+
+    def step(self, estimate: Estimate, state: None) -> tuple[Reference, None]:
+        return at_time(self._latest, estimate.time), None
+
+
+def at_time(reference: Reference, time: float) -> Reference:
+    """The same reference at another time, s."""
+    r = reference
+    return Reference(time, r.tasks, r.posture, r.phase, r.preview, r.tuning, r.diagnostics)

@@ -1,0 +1,252 @@
+"""The exploration as a source: frames, axes, bounds, bad signals, diagnostics."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from pliant.errors import ConfigError, PliantError, SignalError
+from pliant.references.contact_normal import angle_between, turned_normal, within_cone
+from pliant.references.exploration_axis import AxisPhase
+from pliant.references.exploration_config import ExplorationConfig
+from pliant.references.haptic_exploration import CHANNELS, HapticExploration
+from pliant.references.schedule import Mailbox
+from pliant.references.sliding_span import SlidingSpan
+from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
+from pliant.spatial import exp3, log3
+
+PERIOD = 1e-3
+
+
+def tuned(axes: int = 3, range_: float = 0.02) -> ImpedanceTuning:
+    stiffness = np.array([6000.0] * 3 + [60.0] * (axes - 3))
+    force_max = np.array([100.0] * 3 + [10.0] * (axes - 3))
+    return ImpedanceTuning(stiffness, force_max, np.array([range_] * 3 + [0.2] * (axes - 3)))
+
+
+def task(
+    frame: str = "foot", wrench=(0, 0, 40, 0, 0, 0), tuning: ImpedanceTuning | None = None, **more
+) -> TaskReference:
+    return TaskReference(
+        frame, np.array([0.3, 0.1, 0.0]), wrench=np.array(wrench, float), tuning=tuning or tuned(), **more
+    )
+
+
+def reference(*tasks: TaskReference, tuning=None) -> Reference:
+    return Reference(0.0, tasks, tuning=tuning)
+
+
+def estimate(tick: int, **wrenches) -> Estimate:
+    zero = np.zeros(3)
+    return Estimate(tick * PERIOD, zero, zero, zero, zero, {k: np.array(v, float) for k, v in wrenches.items()})
+
+
+def play(source: HapticExploration, ticks: int, first: int = 0, state=None, **wrenches):
+    """The last reference and the state after a number of ticks with constant wrenches."""
+    state = source.init(estimate(first, **wrenches)) if state is None else state
+    out = None
+    for tick in range(first, first + ticks):
+        out, state = source.step(estimate(tick, **wrenches), state)
+    return out, state
+
+
+def test_offset_moves_against_the_missing_force_and_is_reported() -> None:
+    out, _ = play(HapticExploration(Mailbox(reference(task()))), 50, foot=(3, 0, 10, 0, 0, 0))
+    offset = out.diagnostics["exploration/foot/offset"]
+    np.testing.assert_allclose(out.tasks[0].position, np.array([0.3, 0.1, 0.0]) + offset)
+    assert offset[2] < -1e-3
+    assert not offset[:2].any()  # no force desired there
+    assert out.diagnostics["exploration/foot/phase"].tolist() == [AxisPhase.OFF, AxisPhase.OFF, AxisPhase.CONTACT]
+    assert set(out.diagnostics) == {f"exploration/foot/{name}" for name in CHANNELS}
+    assert out.tasks[0].tuning is not None
+
+
+def test_bound_that_shrinks_holds_in_the_same_tick() -> None:
+    box = Mailbox(reference(task()))
+    source = HapticExploration(box)
+    out, state = play(source, 400, foot=(0, 0, 2, 0, 0, 0))
+    assert out.diagnostics["exploration/foot/offset"][2] == -0.02
+    assert out.diagnostics["exploration/foot/unreachable"][2] == 1.0
+    box.put(reference(task(tuning=tuned(range_=0.005))))
+    out, state = source.step(estimate(400, foot=(0, 0, 2, 0, 0, 0)), state)
+    assert out.diagnostics["exploration/foot/offset"][2] == -0.005
+    out, state = source.step(estimate(401, foot=(0, 0, np.nan, 0, 0, 0)), state)
+    assert out.diagnostics["exploration/foot/offset"][2] == -0.005
+
+
+def test_force_beyond_the_maximum_is_clamped_and_reported() -> None:
+    out, _ = play(HapticExploration(Mailbox(reference(task(wrench=(0, 0, -160, 0, 0, 0))))), 3, foot=np.zeros(6))
+    assert out.tasks[0].wrench[2] == -100.0
+    assert out.diagnostics["exploration/foot/clamped"][2] == -60.0
+
+
+def test_signal_that_is_not_finite_holds_everything() -> None:
+    source = HapticExploration(Mailbox(reference(task())))
+    before, state = play(source, 30, foot=(0, 0, 10, 0, 0, 0))
+    held, state = play(source, 5, 30, state, foot=(0, np.inf, np.nan, 0, 0, 0))
+    np.testing.assert_array_equal(held.tasks[0].position, before.tasks[0].position)
+    after, _ = play(source, 5, 35, state, foot=(0, 0, 10, 0, 0, 0))
+    assert np.isfinite(after.tasks[0].position).all()
+
+
+def test_frames_are_explored_on_their_own() -> None:
+    tasks = task("left"), task("right", wrench=(0, 0, -20, 0, 0, 0)), task("elbow", wrench=np.zeros(6))
+    out, _ = play(
+        HapticExploration(Mailbox(reference(*tasks))), 40, left=(0, 0, 10, 0, 0, 0), right=(0, 0, -5, 0, 0, 0)
+    )
+    assert out.diagnostics["exploration/left/offset"][2] < 0.0 < out.diagnostics["exploration/right/offset"][2]
+    assert out.tasks[2] is tasks[2]  # nothing to feel
+
+
+def test_six_axes_turn_the_target_about_the_moment() -> None:
+    R = exp3([0.3, -0.2, 0.5])
+    wrench = (0, 0, 0, 0, 0.5, 0)
+    source = HapticExploration(Mailbox(reference(task(wrench=wrench, tuning=tuned(6), rotation=R))))
+    out, _ = play(source, 50, foot=(0, 0, 0, 0, 0.2, 0))
+    offset = out.diagnostics["exploration/foot/offset"]
+    assert offset.shape == (6,)
+    assert offset[4] < -1e-4
+    np.testing.assert_allclose(log3(out.tasks[0].rotation @ R.T), offset[3:], atol=1e-12)
+
+
+def test_no_desired_force_brings_the_offset_back_slowly() -> None:
+    box = Mailbox(reference(task()))
+    source = HapticExploration(box)
+    out, state = play(source, 200, foot=(0, 0, 10, 0, 0, 0))
+    start = out.diagnostics["exploration/foot/offset"][2]
+    box.put(reference(task(wrench=np.zeros(6))))
+    out, state = play(source, 10, 200, state, foot=(0, 0, 10, 0, 0, 0))
+    assert out.diagnostics["exploration/foot/offset"][2] == pytest.approx(start + 0.1 * 10 * PERIOD)
+    out, state = play(source, 500, 210, state)  # no signal is needed any more
+    assert out.diagnostics["exploration/foot/offset"][2] == 0.0
+
+
+def test_parameters_change_with_the_reference() -> None:
+    box = Mailbox(reference(task()))
+    source = HapticExploration(box)
+    _, state = play(source, 20, foot=(0, 0, 10, 0, 0, 0))
+    slow = ExplorationConfig(speed=1e-4)
+    box.put(reference(task(), tuning=slow))
+    before, state = play(source, 1, 20, state, foot=(0, 0, 10, 0, 0, 0))
+    after, state = play(source, 10, 21, state, foot=(0, 0, 10, 0, 0, 0))
+    moved = after.tasks[0].position[2] - before.tasks[0].position[2]
+    assert abs(moved) <= 1e-4 * 10 * PERIOD * (1 + 1e-9)
+
+
+def test_frame_that_was_away_starts_anew() -> None:
+    box = Mailbox(reference(task()))
+    source = HapticExploration(box)
+    _, state = play(source, 200, foot=(0, 0, 10, 0, 0, 0))
+    box.put(reference())
+    _, state = play(source, 200, 200, state)
+    box.put(reference(task()))
+    out, _ = play(source, 1, 400, state, foot=(0, 0, 10, 0, 0, 0))
+    assert abs(out.diagnostics["exploration/foot/offset"][2]) < 1e-3
+
+
+def test_pause_does_not_make_the_target_jump() -> None:
+    source = HapticExploration(Mailbox(reference(task())))
+    before, state = play(source, 20, foot=(0, 0, 10, 0, 0, 0))
+    after, _ = source.step(estimate(20 + 90, foot=(0, 0, 10, 0, 0, 0)), state)
+    assert abs(after.tasks[0].position[2] - before.tasks[0].position[2]) <= 0.15 * 0.02 + 1e-12
+
+
+def slide(direction: str, friction: float, tilt: float) -> np.ndarray:
+    """Offset after sliding along a tilted plane that pushes back 10 N along its normal, with friction."""
+    normal = np.array([-math.sin(tilt), 0.0, math.cos(tilt)])
+    along = np.array([math.cos(tilt), 0.0, math.sin(tilt)])
+    velocity = np.concatenate([0.1 * along, np.zeros(3)])
+    force = np.concatenate([10.0 * (normal - friction * along), np.zeros(3)])
+    source = HapticExploration(
+        Mailbox(reference(task(velocity=velocity))),
+        ExplorationConfig(direction=direction),  # type: ignore[arg-type]
+    )
+    out, _ = play(source, 250, foot=force)
+    offset = out.diagnostics["exploration/foot/offset"]
+    return np.array([offset @ normal, offset @ along]) / np.linalg.norm(offset)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3, 0.8])
+def test_offset_follows_the_normal_whatever_the_friction(friction: float) -> None:
+    along_normal, along_tangent = slide("normal", friction, 0.3)
+    assert along_normal < -0.99
+    assert abs(along_tangent) < 0.1
+    assert abs(slide("axes", friction, 0.3)[1]) > 0.25  # control arm: straight down leaks into the tangent
+
+
+def test_normal_is_left_alone_at_rest_and_kept_in_its_cone() -> None:
+    up, force = (0.0, 0.0, 1.0), (5.0, 0.0, 10.0)
+    assert turned_normal(up, force, (0.0, 0.0, 0.0), 1.0, PERIOD, 0.05, 2.0) == up
+    turned = turned_normal(up, force, (0.0, 0.1, 0.0), 1.0, PERIOD, 0.05, 2.0)
+    assert 0.0 < angle_between(up, turned) <= 2.0 * PERIOD * 1.01
+    far = (math.sin(1.2), 0.0, math.cos(1.2))
+    assert angle_between(up, within_cone(far, up, 0.5)) == pytest.approx(0.5)
+    assert within_cone((0.0, 0.0, -1.0), up, 0.5) == up
+
+
+def test_normal_mode_keeps_the_bound_of_every_axis() -> None:
+    force = (8, 3, 2, 0, 0, 0)
+    velocity = np.array([0.0, 0.05, 0.02, 0, 0, 0])
+    source = HapticExploration(Mailbox(reference(task(velocity=velocity))), ExplorationConfig(direction="normal"))
+    state = source.init(estimate(0))
+    last = np.zeros(3)
+    for tick in range(600):
+        out, state = source.step(estimate(tick, foot=force), state)
+        offset = out.diagnostics["exploration/foot/offset"]
+        assert np.all(np.abs(offset) <= 0.02)
+        assert np.all(np.abs(offset - last) <= 0.3 * PERIOD + 1e-12)  # nothing jumps
+        last = offset
+
+
+def test_span_is_that_of_the_window() -> None:
+    random, span = np.random.default_rng(0), SlidingSpan()
+    values = random.normal(size=300)
+    for index, value in enumerate(values):
+        got = span.add(index * PERIOD, float(value), index * PERIOD - 0.0201)
+        part = values[max(0, index - 20) : index + 1]
+        assert got == pytest.approx(part.max() - part.min())
+
+
+@pytest.mark.parametrize(
+    ("make", "wrenches", "words"),
+    [
+        (task, {}, "no force signal; there is none"),
+        (task, {"fot": np.zeros(6)}, "did you mean 'fot'"),
+        (lambda: dataclasses.replace(task(), tuning=None), {"foot": np.zeros(6)}, "needs its impedance"),
+        (lambda: task(wrench=(0, 0, np.nan, 0, 0, 0)), {"foot": np.zeros(6)}, "is not finite"),
+    ],
+)
+def test_bad_input_is_named(make, wrenches, words: str) -> None:
+    with pytest.raises(PliantError, match=words):
+        play(HapticExploration(Mailbox(reference(make()))), 1, **wrenches)
+
+
+def test_time_that_runs_backwards_is_refused() -> None:
+    source = HapticExploration(Mailbox(reference(task())))
+    _, state = play(source, 20, foot=np.zeros(6))
+    with pytest.raises(SignalError, match="backwards"):
+        source.step(estimate(3, foot=np.zeros(6)), state)
+
+
+def test_config_refuses_impossible_values_and_documents_every_parameter() -> None:
+    for values in ({"gain": -1.0}, {"gain": float("nan")}, {"speed": 0.0}, {"mode": "magic"}, {"gian": 1.0}):
+        with pytest.raises(ValidationError):
+            ExplorationConfig(**values)
+    for name, field in ExplorationConfig.model_fields.items():
+        assert field.description, name
+        if isinstance(field.default, float):
+            assert isinstance(field.json_schema_extra, dict), name
+            assert "unit" in field.json_schema_extra, name
+
+
+def test_tunings_of_the_exploration_are_passed_on() -> None:
+    bare = dataclasses.replace(task(), tuning=None)
+    source = HapticExploration(Mailbox(reference(bare)), tunings={"foot": tuned()})
+    out, _ = play(source, 2, foot=np.zeros(6))
+    assert out.tasks[0].tuning is source.tunings["foot"]
+    with pytest.raises(ConfigError):
+        play(HapticExploration(Mailbox(reference(bare))), 1, foot=np.zeros(6))
