@@ -1,0 +1,89 @@
+"""Low-pass filters for vectors, sampled at a fixed period. The state goes in and comes out."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+import numpy as np
+
+from pliant.errors import ConfigError
+from pliant.spatial import Array
+
+
+class Memory(NamedTuple):
+    """State of a filter of up to second order, each (k,)."""
+
+    first: Array
+    second: Array
+
+
+class LowPass(ABC):
+    """A low-pass filter with gain one at rest."""
+
+    @abstractmethod
+    def init(self, value: Array) -> Memory:
+        """State of a filter that has seen `value` (k,) for ever: its output starts there without a transient."""
+
+    @abstractmethod
+    def step(self, value: Array, state: Memory) -> tuple[Array, Memory]:
+        """Filtered value (k,) and the next state."""
+
+
+class FirstOrder(LowPass):
+    """y ← y + α (x − y), α = 1 − e^{−2π f_c T}: the step response of a continuous first-order filter, hit at every
+    sample.
+
+    Args:
+        cutoff: f_c, Hz.
+        period: T, s.
+    """
+
+    def __init__(self, cutoff: float, period: float) -> None:
+        _check(cutoff, period)
+        self.gain = -math.expm1(-2.0 * math.pi * cutoff * period)
+        """α"""
+
+    def init(self, value: Array) -> Memory:
+        return Memory(value, value)
+
+    def step(self, value: Array, state: Memory) -> tuple[Array, Memory]:
+        filtered = state.first + self.gain * (value - state.first)
+        return filtered, Memory(filtered, filtered)
+
+
+class Butterworth(LowPass):
+    """Second order, maximally flat; bilinear transform, prewarped so that the gain at f_c is 1/√2 exactly.
+
+    Args:
+        cutoff: f_c, Hz, below half the sampling rate.
+        period: T, s.
+    """
+
+    def __init__(self, cutoff: float, period: float) -> None:
+        _check(cutoff, period)
+        if cutoff >= 0.5 / period:
+            raise ConfigError(
+                "the cutoff of a Butterworth filter must lie below half the sampling rate,"
+                f" got {cutoff} Hz at {1.0 / period:g} Hz"
+            )
+        w = math.tan(math.pi * cutoff * period)
+        scale = 1.0 / (1.0 + math.sqrt(2.0) * w + w * w)
+        self._b = w * w * scale  # numerator b (1 + 2 z⁻¹ + z⁻²)
+        self._a_1 = 2.0 * (w * w - 1.0) * scale
+        self._a_2 = (1.0 - math.sqrt(2.0) * w + w * w) * scale
+
+    def init(self, value: Array) -> Memory:
+        return Memory((1.0 - self._b) * value, (self._b - self._a_2) * value)
+
+    def step(self, value: Array, state: Memory) -> tuple[Array, Memory]:
+        # transposed direct form II
+        driven = self._b * value
+        filtered = driven + state.first
+        return filtered, Memory(2.0 * driven - self._a_1 * filtered + state.second, driven - self._a_2 * filtered)
+
+
+def _check(cutoff: float, period: float) -> None:
+    if not (np.isfinite([cutoff, period]).all() and cutoff > 0.0 and period > 0.0):
+        raise ConfigError(f"a filter needs a cutoff above 0 Hz and a period above 0 s, got {cutoff} Hz and {period} s")
