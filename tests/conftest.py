@@ -8,7 +8,9 @@ from hypothesis import HealthCheck, settings
 from pliant.robot import Robot
 from pliant.robots import CATALOGUE, is_available
 
-settings.register_profile("pliant", deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+settings.register_profile(
+    "pliant", deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+)
 settings.load_profile("pliant")
 
 

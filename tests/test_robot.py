@@ -41,7 +41,9 @@ def test_locking_joints_keeps_the_inertia_behind_them(iiwa14: Robot) -> None:
     q = np.array([0.1, 0.5, -0.3, -0.9, 0.2, 0.6])
     whole = np.append(q, angle)
     gravity = pin.computeGeneralizedGravity(iiwa14.model, iiwa14.model.createData(), whole)[:6]
-    np.testing.assert_allclose(pin.computeGeneralizedGravity(locked.model, locked.model.createData(), q), gravity, atol=1e-10)
+    np.testing.assert_allclose(
+        pin.computeGeneralizedGravity(locked.model, locked.model.createData(), q), gravity, atol=1e-10
+    )
     np.testing.assert_allclose(locked.placement(q, "flange")[0], iiwa14.placement(whole, "flange")[0], atol=1e-12)
 
 
@@ -53,7 +55,9 @@ def test_a_tool_adds_its_weight_where_it_is(iiwa14: Robot) -> None:
         with_tool.model, with_tool.model.createData(), q
     ) - pin.computeGeneralizedGravity(iiwa14.model, iiwa14.model.createData(), q)
     middle = iiwa14.with_frame("middle", "flange", (0.0, 0.0, 0.1))
-    J = pin.computeFrameJacobian(middle.model, middle.model.createData(), q, middle.frame_id("middle"), pin.LOCAL_WORLD_ALIGNED)
+    J = pin.computeFrameJacobian(
+        middle.model, middle.model.createData(), q, middle.frame_id("middle"), pin.LOCAL_WORLD_ALIGNED
+    )
     np.testing.assert_allclose(difference, J[:3].T @ [0.0, 0.0, 0.4 * 9.81], atol=1e-9)
     offset = with_tool.placement(q, "tool")[0] - with_tool.placement(q, "flange")[0]
     assert np.linalg.norm(offset) == pytest.approx(0.2)
@@ -164,8 +168,8 @@ TWO_LINK_MJCF = """
 
 CONTINUOUS_URDF = """
 <robot name="wheel">
-  <link name="base"/>
-  <link name="rim"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
-  <joint name="axle" type="continuous"><parent link="base"/><child link="rim"/><axis xyz="0 0 1"/></joint>
+  <link name="base"/> <link name="rim"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"
+  iyz="0"/></inertial></link> <joint name="axle" type="continuous"><parent link="base"/><child link="rim"/><axis xyz="0
+  0 1"/></joint>
 </robot>
 """

@@ -39,7 +39,9 @@ def test_exp_and_log_agree_with_pinocchio() -> None:
 @pytest.mark.parametrize("e", [[1e-6, 2e-6, -1e-6], [0.3, -0.2, 0.5], [1.5, 1.9, -0.7]])
 def test_left_jacobian_inverse_is_the_derivative_of_log(e: list[float]) -> None:
     step = 1e-6
-    columns = [(log3(exp3(step * axis) @ exp3(e)) - log3(exp3(-step * axis) @ exp3(e))) / (2 * step) for axis in np.eye(3)]
+    columns = [
+        (log3(exp3(step * axis) @ exp3(e)) - log3(exp3(-step * axis) @ exp3(e))) / (2 * step) for axis in np.eye(3)
+    ]
     np.testing.assert_allclose(left_jacobian_inverse(e), np.array(columns).T, atol=1e-8)
 
 

@@ -10,13 +10,14 @@ BRISTLE_SIZE: int
 class ContactLoop:
     """Contacts of one MuJoCo model and data, and the loop of mj_step1, forces, mj_step2.
 
-    `step1` and `step2` are the addresses of those functions in the loaded MuJoCo library. Arrays must be float64 and contiguous;
-    `bristles`, `force`, `point` and `penetration` are written in place.
+    `step1` and `step2` are the addresses of those functions in the loaded MuJoCo library. Arrays must be float64 and
+    contiguous; `bristles`, `force`, `point` and `penetration` are written in place.
     """
 
     def __init__(self, model: Any, data: Any, step1: int, step2: int) -> None: ...
     def add_pair(self, geom_a: int, geom_b: int, material: Array) -> tuple[int, int]:
-        """Adds a pair of geoms; material (8,) in the order of `ContactMaterial`. Returns its first slot and its number of slots.
+        """Adds a pair of geoms; material (8,) in the order of `ContactMaterial`. Returns its first slot and its number
+        of slots.
 
         Raises ValueError: an unknown geom, or shapes that are not supported in this order.
         """
@@ -26,7 +27,11 @@ class ContactLoop:
         """Number of contact points of all pairs."""
 
     def evaluate(self, dt: float, push: Array, bristles: Array, force: Array, point: Array, penetration: Array) -> bool:
-        """Forces in the present state: writes push (nbody, 6) plus contacts to xfrc_applied. False if one is not finite."""
+        """Forces in the present state: writes push (nbody, 6) plus contacts to xfrc_applied. False if one is not
+        finite."""
 
-    def advance(self, count: int, dt: float, push: Array, bristles: Array, force: Array, point: Array, penetration: Array) -> int:
-        """Makes `count` physics steps of `dt` s without the GIL. Returns how many were sound; fewer than `count` is a failure."""
+    def advance(
+        self, count: int, dt: float, push: Array, bristles: Array, force: Array, point: Array, penetration: Array
+    ) -> int:
+        """Makes `count` physics steps of `dt` s without the GIL. Returns how many were sound; fewer than `count` is a
+        failure."""

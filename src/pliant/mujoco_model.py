@@ -1,7 +1,7 @@
 """A robot as a MuJoCo specification, made from its pinocchio model.
 
-Going through pinocchio's model rather than the robot's file gives locked joints, tools, MJCF and `package://` meshes one path,
-and both libraries the same numbers: mass matrix, bias and frame Jacobians agree to 1e-9.
+Going through pinocchio's model rather than the robot's file gives locked joints, tools, MJCF and `package://` meshes
+one path, and both libraries the same numbers: mass matrix, bias and frame Jacobians agree to 1e-9.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ VISUAL_GROUP = 2
 def spec_from_robot(robot: Robot) -> mujoco.MjSpec:
     """A MuJoCo specification with the robot's bodies, joints, frames (as sites of the same name) and looks.
 
-    The robot stands in an empty world under gravity; there is no joint damping, friction, actuator or contact in it. Joints have
-    the names and the order of `robot.joint_names`, bodies are called after the joint that moves them.
+    The robot stands in an empty world under gravity; there is no joint damping, friction, actuator or contact in it.
+    Joints have the names and the order of `robot.joint_names`, bodies are called after the joint that moves them.
 
     Args:
         robot: any robot; joints are revolute or prismatic.

@@ -168,7 +168,9 @@ class Robot:
         """The robot with some joints fixed at given angles (rad or m)."""
         for name, value in joints.items():
             if name not in self.joint_names:
-                raise ConfigError(f"robot {self.name!r} has no joint {name!r} to lock; {options(self.joint_names, name)}")
+                raise ConfigError(
+                    f"robot {self.name!r} has no joint {name!r} to lock; {options(self.joint_names, name)}"
+                )
             if not np.isfinite(value):
                 raise ConfigError(f"joint {name!r} must be locked at a finite angle, got {value}")
         if len(joints) >= self.n:
@@ -184,7 +186,9 @@ class Robot:
         keep = [i for i, name in enumerate(self.joint_names) if name not in joints]
         return replace(self, model=model, visual=visual, home=self.home[keep])
 
-    def with_frame(self, name: str, parent: str, offset: npt.ArrayLike = (0.0, 0.0, 0.0), radius: float | None = None) -> Robot:
+    def with_frame(
+        self, name: str, parent: str, offset: npt.ArrayLike = (0.0, 0.0, 0.0), radius: float | None = None
+    ) -> Robot:
         """The robot with one more frame.
 
         Args:
@@ -256,9 +260,12 @@ def _read(path: Path, name: str) -> Robot:
             kind = joint.shortname()
             if kind.startswith("JointModelRUB"):
                 raise RobotError(
-                    f"{path}: joint {joint_name!r} is continuous; give it limits (type 'revolute'), every joint needs one angle"
+                    f"{path}: joint {joint_name!r} is continuous; give it limits (type 'revolute'): every joint needs"
+                    " one angle"
                 )
-            raise RobotError(f"{path}: joint {joint_name!r} is of type {kind}; only revolute and prismatic joints are supported")
+            raise RobotError(
+                f"{path}: joint {joint_name!r} is of type {kind}; only revolute and prismatic joints are supported"
+            )
     if model.nv == 0:
         raise RobotError(f"{path} has no joint that moves")
     lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)

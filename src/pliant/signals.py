@@ -2,9 +2,9 @@
 
     measurement ─▶ estimate ─▶ reference ─▶ command ─▶ plant ─▶ measurement
 
-All of them are frozen. Units are SI, angles in radians. Wrenches are the environment's reaction on the robot, linear part
-first. `n` is the number of joints. A pose, twist or wrench whose name ends in a frame is expressed at that frame's origin; in
-axes aligned with the world unless the field says otherwise.
+All of them are frozen. Units are SI, angles in radians. Wrenches are the environment's reaction on the robot, linear
+part first. `n` is the number of joints. A pose, twist or wrench whose name ends in a frame is expressed at that
+frame's origin; in axes aligned with the world unless the field says otherwise.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Measurement:
     torque_sent: Array
     """(n,) torque that was really sent in the period that ends now, after every clamp, N·m"""
     wrenches: Mapping[str, Array] = field(default_factory=_nothing)
-    """frame → (6,) wrench of a force/torque sensor at that frame, in the frame's own axes, N and N·m. It holds everything the
-    sensor feels, the tool's weight and inertia too."""
+    """frame → (6,) wrench of a force/torque sensor at that frame, in the frame's own axes, N and N·m. It holds
+    everything the sensor feels, the tool's weight and inertia too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +68,11 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class ImpedanceTuning:
-    """Parameters of one fractal impedance task, one entry per axis (3, or 6 with rotation). Swapped whole between two ticks.
+    """Parameters of one fractal impedance task, one entry per axis (3, or 6 with rotation). Swapped whole between two
+    ticks.
 
-    The force grows with `stiffness` up to the error `linear_range`, then bends towards `force_max`, which it reaches (to
-    within a fraction of a percent) at `range`. An axis with stiffness and force_max both zero is off.
+    The force grows with `stiffness` up to the error `linear_range`, then bends towards `force_max`, which it reaches
+    (to within a fraction of a percent) at `range`. An axis with stiffness and force_max both zero is off.
 
     Raises:
         ConfigError: on construction, if the parameters are impossible (names the axis and the numbers).
@@ -84,7 +85,8 @@ class ImpedanceTuning:
     range: Array
     """x_b (k,), m and rad: the error at which F_max is reached"""
     linear_range: Array | None = None
-    """x_0 (k,), m and rad: the end of the linear part. None: derived from the profile (0.95 x_b, or where 0.95 F_max is reached)"""
+    """x_0 (k,), m and rad: the end of the linear part. None: derived from the profile (0.95 x_b, or where 0.95 F_max
+    is reached)"""
 
     def __post_init__(self) -> None:
         size = np.atleast_1d(np.asarray(self.range)).shape[0]
@@ -112,7 +114,9 @@ class ImpedanceTuning:
             K_0, F_max = float(self.stiffness[axis]), float(self.force_max[axis])
             x_0, x_b = float(linear_range[axis]), float(self.range[axis])
             if x_b <= x_0:
-                raise ConfigError(f"axis {axis}: range x_b must exceed linear_range x_0, got x_b = {x_b:g}, x_0 = {x_0:g}")
+                raise ConfigError(
+                    f"axis {axis}: range x_b must exceed linear_range x_0, got x_b = {x_b:g}, x_0 = {x_0:g}"
+                )
             if F_max < K_0 * x_0:
                 raise ConfigError(
                     f"axis {axis}: force_max must be at least stiffness · linear_range, got F_max = {F_max:g} <"
@@ -146,7 +150,8 @@ class TaskReference:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """The reference at the nodes of a prediction horizon, N + 1 instants from now on. Controllers without one ignore it."""
+    """The reference at the nodes of a prediction horizon, N + 1 instants from now on. Controllers without one ignore
+    it."""
 
     time: Array
     """(N+1,) s"""

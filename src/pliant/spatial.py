@@ -1,7 +1,7 @@
 """Rotations and spatial vectors: the few formulas that several folders need.
 
-Conventions: SI units and radians, the world's z axis points up, spatial vectors carry the linear part first. The error of a
-pose is `target minus actual`, its rotational part `log(R_target R_actualᵀ)` in world axes.
+Conventions: SI units and radians, the world's z axis points up, spatial vectors carry the linear part first. The error
+of a pose is `target minus actual`, its rotational part `log(R_target R_actualᵀ)` in world axes.
 """
 
 from __future__ import annotations

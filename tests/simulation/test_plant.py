@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import mujoco
 import numpy as np
 import pinocchio as pin
@@ -35,7 +37,9 @@ def torque(values: object, n: int) -> Command:
 
 
 def jacobian(robot: Robot, q: np.ndarray, frame: str) -> np.ndarray:
-    return pin.computeFrameJacobian(robot.model, robot.model.createData(), q, robot.frame_id(frame), pin.LOCAL_WORLD_ALIGNED)
+    return pin.computeFrameJacobian(
+        robot.model, robot.model.createData(), q, robot.frame_id(frame), pin.LOCAL_WORLD_ALIGNED
+    )
 
 
 def press(plant: MujocoPlant, force: float, seconds: float = 0.8) -> tuple[World, np.ndarray]:
@@ -160,7 +164,7 @@ def test_random_pushes_stay_in_their_ranges_and_repeat_with_the_seed() -> None:
     pushes = random_pushes(np.random.default_rng(7), "elbow", 20.0, start=1.0)
     assert pushes == random_pushes(np.random.default_rng(7), "elbow", 20.0, start=1.0)
     assert pushes != random_pushes(np.random.default_rng(8), "elbow", 20.0, start=1.0)
-    for push, following in zip(pushes[:-1], pushes[1:], strict=True):
+    for push, following in itertools.pairwise(pushes):
         assert 10.0 <= np.linalg.norm(push.force) <= 30.0
         assert 0.2 <= push.duration <= 0.6
         assert 0.1 <= following.start - push.start - push.duration <= 0.4
@@ -226,5 +230,5 @@ def test_impossible_scenes_are_refused(make: object) -> None:
 
 
 def test_a_contact_too_stiff_for_the_step_names_the_numbers(leg3: Robot) -> None:
-    with pytest.raises(ConfigError, match="must stay below 4.*shorten the step"):
+    with pytest.raises(ConfigError, match=r"must stay below 4.*shorten the step"):
         MujocoPlant(leg3, Scene((floor(0.0, Surface(1e6, 1e4)),)))

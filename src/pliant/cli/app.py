@@ -52,16 +52,26 @@ def _complain(kind: str, text: str) -> None:
 
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for logs, figures and summary.json.")]
-Sets = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Overrides one value, e.g. plant.period=0.002; repeatable.")]
+Sets = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Overrides one value, e.g. plant.period=0.002; repeatable."),
+]
 Controller = Annotated[str | None, typer.Option(help="Controller by name; see `pliant list controllers`.")]
-RobotOption = Annotated[str | None, typer.Option("--robot", metavar="NAME|FILE", help="Catalogue name, or a URDF or MJCF file.")]
+RobotOption = Annotated[
+    str | None, typer.Option("--robot", metavar="NAME|FILE", help="Catalogue name, or a URDF or MJCF file.")
+]
 Seed = Annotated[int | None, typer.Option(min=0, help="Seed of every random draw.")]
 
 
 @app.command()
 @_guarded
 def run(
-    target: Annotated[str, typer.Argument(metavar="[STUDY|CONFIG.toml]", help="A study, or a TOML file with `study = ...` and any of its values.")] = "stack",
+    target: Annotated[
+        str,
+        typer.Argument(
+            metavar="[STUDY|CONFIG.toml]", help="A study, or a TOML file with `study = ...` and any of its values."
+        ),
+    ] = "stack",
     case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
     controller: Controller = None,
     robot: RobotOption = None,
@@ -81,7 +91,9 @@ def run(
 def study(
     name: Annotated[str, typer.Argument(help="Study; see `pliant list studies`.")] = "stack",
     case: Annotated[list[str] | None, typer.Option(help="Only this case; repeatable.")] = None,
-    seeds: Annotated[int | None, typer.Option(min=1, help="Seeds per case with random draws (default: the study's own).")] = None,
+    seeds: Annotated[
+        int | None, typer.Option(min=1, help="Seeds per case with random draws (default: the study's own).")
+    ] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
     out: Out = None,
     set_: Sets = None,
@@ -120,7 +132,9 @@ def bench(
 @app.command("list")
 @_guarded
 def list_(
-    what: Annotated[str | None, typer.Argument(metavar="[robots|controllers|studies]", help="What to list; nothing: all.")] = None,
+    what: Annotated[
+        str | None, typer.Argument(metavar="[robots|controllers|studies]", help="What to list; nothing: all.")
+    ] = None,
 ) -> None:
     """Lists robots, controllers and studies."""
     from pliant.cli.listing import list_command
@@ -131,7 +145,9 @@ def list_(
 @app.command()
 @_guarded
 def doctor(
-    config: Annotated[Path | None, typer.Option("--config", metavar="CONFIG.toml", help="A configuration to check for unsafe gains.")] = None,
+    config: Annotated[
+        Path | None, typer.Option("--config", metavar="CONFIG.toml", help="A configuration to check for unsafe gains.")
+    ] = None,
 ) -> None:
     """Checks this installation; with --config, whether a configuration is safe."""
     from pliant.cli.doctor import doctor_command
@@ -147,7 +163,9 @@ def _version(show: bool) -> None:
 
 @app.callback()
 def _root(
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Prints the version.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Prints the version.")
+    ] = False,
 ) -> None:
     pass
 

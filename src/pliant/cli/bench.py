@@ -32,7 +32,15 @@ def _controllers(console: Console) -> dict[str, Any]:
     from pliant.controllers.benchmark import run
 
     result = run()
-    table = Table("µs per step", "median", "p90", "p99", "max", title=f"two-task stack on 7 joints, {result['steps']} steps", title_justify="left")
+    table = Table(
+        "µs per step",
+        "median",
+        "p90",
+        "p99",
+        "max",
+        title=f"two-task stack on 7 joints, {result['steps']} steps",
+        title_justify="left",
+    )
     for clock in ("cpu", "wall"):
         table.add_row(f"{clock} time", *(f"{result[clock][name]:.1f}" for name in ("median", "p90", "p99", "max")))
     console.print(table)

@@ -13,7 +13,20 @@ from rich.table import Table
 from pliant import __version__
 from pliant.errors import PliantError
 
-_REQUIRED = ("numpy", "pin", "mujoco", "mink", "daqp", "pydantic", "typer", "rich", "matplotlib", "mcap", "mcap-ros2-support", "distributed")
+_REQUIRED = (
+    "numpy",
+    "pin",
+    "mujoco",
+    "mink",
+    "daqp",
+    "pydantic",
+    "typer",
+    "rich",
+    "matplotlib",
+    "mcap",
+    "mcap-ros2-support",
+    "distributed",
+)
 _OPTIONAL = {
     "example-robot-data": "more robots: pip install 'pliant[robots]'",
     "crocoddyl": "second solver for predictive controllers: pip install 'pliant[crocoddyl]'",
@@ -31,7 +44,13 @@ def doctor_command(console: Console, config: Path | None) -> None:
     if config is not None:
         _check_config(console, config)
         return
-    table = Table("what", "found", "", title=f"pliant {__version__} on Python {platform.python_version()}, {platform.machine()}", title_justify="left")
+    table = Table(
+        "what",
+        "found",
+        "",
+        title=f"pliant {__version__} on Python {platform.python_version()}, {platform.machine()}",
+        title_justify="left",
+    )
     for name in _REQUIRED:
         version = _version(name)
         table.add_row(name, version or "–", "✓" if version else "✗ missing: pip install pliant")
@@ -52,7 +71,9 @@ def _check_config(console: Console, path: Path) -> None:
     for warning in warnings:
         console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False, soft_wrap=True)
     if not warnings:
-        console.print(f"{path}: study {study.name!r}, case {config.case!r}, controller {config.controller!r}: nothing unsafe found")
+        console.print(
+            f"{path}: nothing unsafe found (study {study.name!r}, case {config.case!r}, {config.controller!r})"
+        )
 
 
 def _version(name: str) -> str | None:
@@ -81,4 +102,6 @@ def _rendering() -> tuple[str, str]:
         drawn = render(plant.model, [Snapshot(plant.start)], Camera(), width=64, height=48)
     except (OSError, PliantError) as error:
         return "–", f"✗ {error}"
-    return ("yes", "✓") if drawn else ("–", "scenes are not drawn: install libegl1 or libosmesa6; everything else works")
+    return (
+        ("yes", "✓") if drawn else ("–", "scenes are not drawn: install libegl1 or libosmesa6; everything else works")
+    )

@@ -9,13 +9,13 @@ from typing import Any
 from rich.console import Console
 
 from pliant.cli.progress import progress_bar
+from pliant.cli.report import print_results, save_summary
 from pliant.errors import ConfigError, RunFailedError, options
 from pliant.studies.base import CaseConfig, Study
 from pliant.studies.config import merged, parse_assignments, read_toml
 from pliant.studies.registry import get_study, study_names
 from pliant.studies.runner import run_case
 from pliant.telemetry.output import output_folder
-from pliant.cli.report import print_results, save_summary
 
 
 def run_command(
@@ -52,7 +52,8 @@ def run_command(
 def resolve(
     target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]
 ) -> tuple[Study[Any], CaseConfig]:
-    """The study and the checked configuration that a user means: case defaults, then the TOML file, then the options."""
+    """The study and the checked configuration that a user means: case defaults, then the TOML file, then the
+    options."""
     values: dict[str, Any] = {}
     if target.endswith(".toml"):
         values = read_toml(Path(target))

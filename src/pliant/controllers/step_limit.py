@@ -32,13 +32,15 @@ class StepLimitState:
 class StepLimit(Controller[StepLimitState]):
     """Bounds the change of each joint's torque from one period to the next.
 
-    Gears, joint-torque loops and most robots' own safety want torques that do not jump; an attractor that switches its phase
-    makes them jump. What the bound takes away is part of `Command.clamped`; its work is booked in `energy/step_limit`.
+    Gears, joint-torque loops and most robots' own safety want torques that do not jump; an attractor that switches its
+    phase makes them jump. What the bound takes away is part of `Command.clamped`; its work is booked in
+    `energy/step_limit`.
 
     Args:
         inner: the controller whose torques are bounded.
         robot: for the torque limits.
-        share: largest change per period, as a share of the joint's torque limit; joints without a limit are not bounded.
+        share: largest change per period, as a share of the joint's torque limit; joints without a limit are not
+            bounded.
 
     Raises:
         ConfigError: the share is not above zero.

@@ -33,8 +33,8 @@ class CatalogueEntry:
 _ENTRIES = (
     CatalogueEntry(
         "lwr4",
-        "KUKA LWR 4+, 7 joints; kinematics, torques and speeds of the arm. Its dynamics are assumed: uniform cylinders of"
-        " 2.7 kg (four), 1.7, 1.6 and 0.3 kg, rotor inertia 0.05 kg m²",
+        "KUKA LWR 4+, 7 joints; kinematics, torques and speeds of the arm. Its dynamics are assumed: uniform cylinders"
+        " of 2.7 kg (four), 1.7, 1.6 and 0.3 kg, rotor inertia 0.05 kg m²",
         "lwr4.urdf",
         rotor_inertia=0.05,
         home=(0.0, 0.6, 0.0, -1.4, 0.0, 1.0, 0.0),
@@ -54,7 +54,12 @@ _ENTRIES = (
     ),
     CatalogueEntry("panda", "Franka Emika Panda with its gripper", "panda_description/urdf/panda.urdf", own=False),
     CatalogueEntry("ur5", "Universal Robots UR5, 6 joints", "ur_description/urdf/ur5_robot.urdf", own=False),
-    CatalogueEntry("anymal", "ANYmal B quadruped on a fixed base, 12 joints", "anymal_b_simple_description/robots/anymal.urdf", own=False),
+    CatalogueEntry(
+        "anymal",
+        "ANYmal B quadruped on a fixed base, 12 joints",
+        "anymal_b_simple_description/robots/anymal.urdf",
+        own=False,
+    ),
 )
 
 CATALOGUE: Mapping[str, CatalogueEntry] = {entry.name: entry for entry in _ENTRIES}
@@ -96,7 +101,9 @@ def _locate_file(source: str) -> Path:
     if path.is_file():
         return path
     if path.is_dir():
-        raise RobotError(f"{source} is a folder; a robot is a URDF or MJCF file, or one of the names; {options(CATALOGUE)}")
+        raise RobotError(
+            f"{source} is a folder; a robot is a URDF or MJCF file, or one of the names; {options(CATALOGUE)}"
+        )
     if source.endswith("_description") and importlib.util.find_spec("robot_descriptions") is not None:
         return _from_robot_descriptions(source)
     if path.suffix or "/" in source:

@@ -1,8 +1,8 @@
 """Contact stiffness and damping in N/m and N s/m, given to MuJoCo.
 
-MuJoCo's negative `solref` is a stiffness per unit of the constraint's inverse inertia. With a constant impedance d, `solref =
-(−K Â (1−d), −B Â (1−d))` makes the normal force exactly `K p + B ṗ`, Â being the sum of the two bodies' translational
-`invweight0`. d has to be small, so that the constraint's own compliance dominates its inertia.
+MuJoCo's negative `solref` is a stiffness per unit of the constraint's inverse inertia. With a constant impedance d,
+`solref = (−K Â (1−d), −B Â (1−d))` makes the normal force exactly `K p + B ṗ`, Â being the sum of the two bodies'
+translational `invweight0`. d has to be small, so that the constraint's own compliance dominates its inertia.
 """
 
 from __future__ import annotations
@@ -44,7 +44,8 @@ def apply_surface(model: mujoco.MjModel, pair_name: str, surface: Surface) -> No
     if A_hat * (surface.stiffness * dt**2 + 2.0 * surface.damping * dt) >= 4.0:
         raise ConfigError(
             f"contact {pair_name!r}: (K dt² + 2 B dt)/m must stay below 4, got K = {surface.stiffness:g} N/m, B ="
-            f" {surface.damping:g} N s/m, m = {1.0 / A_hat:.3g} kg at a physics step of {dt:g} s; shorten the step or use contact"
+            f" {surface.damping:g} N s/m, m = {1.0 / A_hat:.3g} kg at a physics step of {dt:g} s;"
+            " shorten the step or use contact"
             ' = "explicit"'
         )
     scale = A_hat * (1.0 - _IMPEDANCE)

@@ -143,9 +143,7 @@ class MujocoPlant(Plant[World]):
             positions={name: data.site_xpos[site].copy() for name, site in self._sites.items()},
             rotations={name: data.site_xmat[site].reshape(3, 3).copy() for name, site in self._sites.items()},
             wrenches=dict(world.wrenches),
-            objects={
-                name: np.concatenate([data.xpos[body], data.xquat[body]]) for name, body in self._movable.items()
-            },
+            objects={name: np.concatenate([data.xpos[body], data.xquat[body]]) for name, body in self._movable.items()},
         )
 
     # ------------------------------------------------------------------ inside
@@ -239,9 +237,7 @@ class MujocoPlant(Plant[World]):
                 site = self._sites[push.frame]
                 body = int(self.model.site_bodyid[site])
                 force = np.array(push.force)
-                mujoco.mj_applyFT(
-                    self.model, data, force, np.zeros(3), data.site_xpos[site], body, data.qfrc_applied
-                )
+                mujoco.mj_applyFT(self.model, data, force, np.zeros(3), data.site_xpos[site], body, data.qfrc_applied)
 
     def _read_contacts(self, world: World) -> None:
         """Sums the contact forces on every contact frame."""

@@ -140,7 +140,8 @@ class Scene:
 
     things: tuple[Thing, ...] = ()
     contact: Literal["mujoco", "explicit"] = "mujoco"
-    """"mujoco": its soft constraints, given the stiffness exactly; "explicit": a force law with stiction, for stiff contacts"""
+    """"mujoco": its soft constraints, given the stiffness exactly; "explicit": a force law with stiction, for stiff
+    contacts"""
 
     def __post_init__(self) -> None:
         names = [thing.name for thing in self.things]
@@ -152,7 +153,9 @@ class Scene:
 
 def floor(height: float = 0.0, surface: Surface | None = None) -> Plane:
     """A horizontal floor at a height in m."""
-    return Plane("floor", (0.0, 0.0, height), (0.0, 0.0, 1.0), surface or Surface(), (1.5, 1.5), (0.86, 0.87, 0.88, 1.0))
+    return Plane(
+        "floor", (0.0, 0.0, height), (0.0, 0.0, 1.0), surface or Surface(), (1.5, 1.5), (0.86, 0.87, 0.88, 1.0)
+    )
 
 
 def table(point: tuple[float, float, float], tilt: float = 0.0, surface: Surface | None = None) -> Plane:
@@ -162,7 +165,9 @@ def table(point: tuple[float, float, float], tilt: float = 0.0, surface: Surface
 
 
 def wall(
-    point: tuple[float, float, float], normal: tuple[float, float, float] = (-1.0, 0.0, 0.0), surface: Surface | None = None
+    point: tuple[float, float, float],
+    normal: tuple[float, float, float] = (-1.0, 0.0, 0.0),
+    surface: Surface | None = None,
 ) -> Plane:
     """A wall through a point in m; `normal` points out of it, towards the robot."""
     return Plane("wall", point, normal, surface or Surface(), (0.35, 0.35), (0.60, 0.68, 0.74, 0.55))

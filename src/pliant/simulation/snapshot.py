@@ -1,7 +1,7 @@
 """Pictures of a scene, without a display.
 
-MuJoCo chooses its OpenGL platform once, when it is imported. A child process that is told to use EGL (or OSMesa) renders
-whatever the parent chose, so a picture never depends on how a program was started.
+MuJoCo chooses its OpenGL platform once, when it is imported. A child process that is told to use EGL (or OSMesa)
+renders whatever the parent chose, so a picture never depends on how a program was started.
 """
 
 from __future__ import annotations

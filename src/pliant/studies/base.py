@@ -27,7 +27,9 @@ class CaseConfig(Config):
     robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
     seed: int = Field(default=0, ge=0, description="of every random draw")
     duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
-    variant: str = Field(default="", description="what distinguishes this run from others of the same case and controller")
+    variant: str = Field(
+        default="", description="what distinguishes this run from others of the same case and controller"
+    )
 
 
 C = TypeVar("C", bound=CaseConfig)
@@ -69,6 +71,8 @@ class Study(ABC, Generic[C]):
     """one line, for people"""
     cases: Mapping[str, C]
     """name → its configuration; the first is the default"""
+    controllers: Sequence[str]
+    """names that `controller` can take"""
 
     def case(self, name: str) -> C:
         """Configuration of a case. Raises ConfigError, with the cases there are, if it does not exist."""
@@ -84,11 +88,6 @@ class Study(ABC, Generic[C]):
             seeds: how many, where draws are random; None: as many as the study deems enough.
         """
         return [self.case(case)]
-
-    @property
-    @abstractmethod
-    def controllers(self) -> Sequence[str]:
-        """Names that `controller` can take."""
 
     @abstractmethod
     def build(self, config: C) -> Experiment:

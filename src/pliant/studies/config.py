@@ -112,7 +112,7 @@ def _keys_beside(kind: type[BaseModel], location: Sequence[int | str]) -> list[s
         field = fields.get(str(part))
         if field is None:
             continue  # a discriminator or a list index
-        nested = [t for t in _models_in(field.annotation)]
+        nested = _models_in(field.annotation)
         if not nested:
             return []
         fields = nested[0].model_fields

@@ -46,7 +46,9 @@ def run_case(
     """
     wired = experiment or study.build(config)
     stem = file_stem(config)
-    recorder = Recorder(None if folder is None else folder / f"{stem}.mcap", run_info(study, config, wired), channels=wired.channels)
+    recorder = Recorder(
+        None if folder is None else folder / f"{stem}.mcap", run_info(study, config, wired), channels=wired.channels
+    )
     ticks = round(config.duration / wired.plant.period)
     watchers: list[Observer] = [recorder, *observers]
     if progress is not None:
@@ -101,4 +103,3 @@ class _Reporter:
         if now >= self._next or self._count == self._ticks:
             self._next = now + 0.1
             self._progress(self._count / self._ticks)
-

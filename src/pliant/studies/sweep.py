@@ -48,7 +48,7 @@ def _in_processes(
 
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # inherited by the workers: one thread each
     with (
-        LocalCluster(n_workers=min(jobs, len(configs)), threads_per_worker=1, dashboard_address=None) as cluster,
+        LocalCluster(n_workers=min(jobs, len(configs)), threads_per_worker=1, dashboard_address=":0") as cluster,
         Client(cluster) as client,
     ):
         futures = [client.submit(run_one, study_name, config, folder, figures, pure=False) for config in configs]

@@ -1,4 +1,5 @@
-"""The stack of passive task-space controllers: [Stack] Tiseo et al. 2020, regenerated and compared with control arms."""
+"""The stack of passive task-space controllers: [Stack] Tiseo et al. 2020, regenerated and compared with control
+arms."""
 
 from pliant.studies.stack.study import STUDY
 

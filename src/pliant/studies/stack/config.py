@@ -1,7 +1,7 @@
 """Typed configuration of the stack study, and its cases.
 
-Source of the task: [Stack] Tiseo et al. 2020, sec. III and Table I. What the paper leaves open (period, ramp, wall, pushes) is
-here, with the value chosen.
+Source of the task: [Stack] Tiseo et al. 2020, sec. III and Table I. What the paper leaves open (period, ramp, wall,
+pushes) is here, with the value chosen.
 """
 
 from __future__ import annotations
@@ -26,21 +26,35 @@ PathKind = Literal["figure8", "line", "stretch", "hold"]
 class Path(Config):
     """What the tool does. It starts from rest within `ramp`."""
 
-    kind: PathKind = Field(default="figure8", description="figure8: x 0.1 m, z 0.2 m; line: along x; stretch: out along −y until the elbow is straight, and back; hold: nothing")
+    kind: PathKind = Field(
+        default="figure8",
+        description="figure8: x 0.1 m, z 0.2 m; line: along x; stretch: along −y until the elbow is straight; hold",
+    )
     period: float = Field(default=4.0, gt=0.0, description="of the figure-8", json_schema_extra={"unit": "s"})
     amplitude: float = Field(default=0.5, gt=0.0, description="of the line", json_schema_extra={"unit": "m"})
     peak_speed: float = Field(default=0.7, gt=0.0, description="of the line", json_schema_extra={"unit": "m/s"})
-    ramp: float = Field(default=2.0, ge=0.0, description="time in which the motion starts from rest", json_schema_extra={"unit": "s"})
-    method: Literal["mink", "aico"] = Field(default="mink", description="inverse kinematics for the posture: quadratic programs, or one-step approximate inference")
+    ramp: float = Field(
+        default=2.0, ge=0.0, description="time in which the motion starts from rest", json_schema_extra={"unit": "s"}
+    )
+    method: Literal["mink", "aico"] = Field(
+        default="mink",
+        description="inverse kinematics for the posture: quadratic programs, or one-step approximate inference",
+    )
 
 
 class Joints(Config):
     """How the simulated joints behave."""
 
-    friction: float = Field(default=0.0, ge=0.0, description="dry friction of each joint", json_schema_extra={"unit": "N·m"})
+    friction: float = Field(
+        default=0.0, ge=0.0, description="dry friction of each joint", json_schema_extra={"unit": "N·m"}
+    )
     damping: float = Field(default=0.0, ge=0.0, description="of each joint", json_schema_extra={"unit": "N·m s/rad"})
-    compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(default="none", description="what the robot compensates by itself")
-    velocity_filter: float = Field(default=1.0, gt=0.0, le=1.0, description="share of a new sample in the low-passed joint velocity; 1: no filter")
+    compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(
+        default="none", description="what the robot compensates by itself"
+    )
+    velocity_filter: float = Field(
+        default=1.0, gt=0.0, le=1.0, description="share of a new sample in the low-passed joint velocity; 1: no filter"
+    )
 
 
 class Wall(Config):
@@ -56,7 +70,9 @@ class Pushes(Config):
     """Random pushes on a frame, one after the other."""
 
     frame: str = Field(default="elbow")
-    force: tuple[float, float] = Field(default=(10.0, 30.0), description="least and most", json_schema_extra={"unit": "N"})
+    force: tuple[float, float] = Field(
+        default=(10.0, 30.0), description="least and most", json_schema_extra={"unit": "N"}
+    )
     duration: tuple[float, float] = Field(default=(0.2, 0.6), json_schema_extra={"unit": "s"})
     gap: tuple[float, float] = Field(default=(0.1, 0.4), json_schema_extra={"unit": "s"})
 
@@ -65,7 +81,9 @@ class Retuning(Config):
     """Random changes of every gain and force bound while the robot moves."""
 
     rate: float = Field(default=4.0, gt=0.0, description="changes per second", json_schema_extra={"unit": "Hz"})
-    factor: tuple[float, float] = Field(default=(0.1, 2.0), description="range of the factor on K_0 and F_max", json_schema_extra={"unit": "1"})
+    factor: tuple[float, float] = Field(
+        default=(0.1, 2.0), description="range of the factor on K_0 and F_max", json_schema_extra={"unit": "1"}
+    )
 
 
 PRESETS: Mapping[str, ControllerConfig] = {
@@ -74,7 +92,8 @@ PRESETS: Mapping[str, ControllerConfig] = {
     "table-1-simulation": TABLE_I_SIMULATION,
     "table-1-robot": TABLE_I_ROBOT,
 }
-"""name → parameters of the two tasks; "stiff" and "soft" are pliant's own for the simulated and the hardware-like robot"""
+"""name → parameters of the two tasks; "stiff" and "soft" are pliant's own for the simulated and the hardware-like
+robot"""
 
 
 class StackConfig(CaseConfig):
@@ -83,13 +102,28 @@ class StackConfig(CaseConfig):
     controller: str = Field(default="stack", description="name of the controller; see `pliant list controllers`")
     robot: str = Field(default="lwr4", description="catalogue name, or path of a URDF or MJCF file")
     duration: float = Field(default=12.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
-    period: float = Field(default=1e-3, gt=0.0, description="control period, a whole multiple of the physics step", json_schema_extra={"unit": "s"})
+    period: float = Field(
+        default=1e-3,
+        gt=0.0,
+        description="control period, a whole multiple of the physics step",
+        json_schema_extra={"unit": "s"},
+    )
     physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
     path: Path = Path()
     joints: Joints = Joints()
-    preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(default="stiff", description="parameters of the stack that `control` starts from")
-    control: dict[str, Any] = Field(default={}, description="changes to the controller's parameters, e.g. control.tasks.ee.translation.stiffness=8000")
-    torque_step: float | None = Field(default=0.14, gt=0.0, description="largest change of a joint's torque per period, as a share of its limit; none: unbounded", json_schema_extra={"unit": "1"})
+    preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(
+        default="stiff", description="parameters of the stack that `control` starts from"
+    )
+    control: dict[str, Any] = Field(
+        default={},
+        description="changes to the controller's parameters, e.g. control.tasks.ee.translation.stiffness=8000",
+    )
+    torque_step: float | None = Field(
+        default=0.14,
+        gt=0.0,
+        description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
+        json_schema_extra={"unit": "1"},
+    )
     wall: Wall | None = None
     pushes: Pushes | None = None
     retuning: Retuning | None = None
@@ -110,7 +144,9 @@ class StackConfig(CaseConfig):
         if isinstance(base, StackParameters):
             base = PRESETS[self.preset].model_copy(update={"law": base.law})
         elif isinstance(base, OperationalSpaceConfig) and self.joints.compensation != "none":
-            base = base.model_copy(update={"compensation": "none" if "coriolis" in self.joints.compensation else "coriolis"})
+            base = base.model_copy(
+                update={"compensation": "none" if "coriolis" in self.joints.compensation else "coriolis"}
+            )
         return merged(base, self.control)
 
     def frames(self) -> tuple[str, str]:
@@ -148,7 +184,9 @@ CASES: Mapping[str, StackConfig] = {
         StackConfig(case="line-hardware", path=Path(kind="line"), **_HARDWARE_LOOP),
         StackConfig(case="line-pushed", path=Path(kind="line"), pushes=Pushes(), **_HARDWARE_LOOP),
         StackConfig(case="line-slow", path=Path(kind="line", peak_speed=0.4), **_HARDWARE_LOOP),
-        StackConfig(case="rest-plain", path=Path(kind="hold"), pushes=Pushes(frame="flange", gap=(0.5, 0.6)), duration=10.0),
+        StackConfig(
+            case="rest-plain", path=Path(kind="hold"), pushes=Pushes(frame="flange", gap=(0.5, 0.6)), duration=10.0
+        ),
         StackConfig(case="singular", path=Path(kind="stretch"), **_HARDWARE_LOOP),
         StackConfig(case="calibration", retuning=Retuning(), **_GAZEBO),
         StackConfig(case="balance", **_GAZEBO),

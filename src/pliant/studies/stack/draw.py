@@ -26,10 +26,10 @@ from pliant.telemetry.plots import (
     joint_torques,
     posture_difference,
     save,
+    style,
     sweep,
     task_path,
 )
-from pliant.telemetry.plots import style
 from pliant.telemetry.summary import Metric
 
 BALANCE_FORCES = (0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0)
@@ -49,8 +49,12 @@ def run_figures(config: StackConfig, experiment: Experiment, log: Log, folder: P
     wall = config.wall.x if config.wall is not None else None
     figures: dict[str, Figure] = {
         "path": task_path([Path2D("actual", actual)], reference, plane, f"Tool path · {title}", wall, by_error=True),
-        "posture": posture_difference(time, log["truth/q"], log["reference/posture"], names, f"Posture off its reference · {title}"),
-        "torque": joint_torques(time, log["command/torque"], experiment.robot.torque_limit, names, f"Joint torques · {title}"),
+        "posture": posture_difference(
+            time, log["truth/q"], log["reference/posture"], names, f"Posture off its reference · {title}"
+        ),
+        "torque": joint_torques(
+            time, log["command/torque"], experiment.robot.torque_limit, names, f"Joint torques · {title}"
+        ),
     }
     if "energy/stored" in log:
         entries = {name: log[f"energy/{name}"] for name in ("stored", "supplied", "dissipated", "clamped")}
@@ -79,7 +83,9 @@ def _scene(config: StackConfig, experiment: Experiment, log: Log, tool: str) -> 
     pictures = render(experiment.plant.model, [*solid, *ghost], _CAMERA, **size)
     if pictures is None:
         return None
-    return _strip([0.72 * a + 0.28 * b for a, b in zip(pictures[:4], pictures[4:], strict=True)], time[moments], config.case)
+    return _strip(
+        [0.72 * a + 0.28 * b for a, b in zip(pictures[:4], pictures[4:], strict=True)], time[moments], config.case
+    )
 
 
 def _strip(pictures: Sequence[Array], times: Array, title: str) -> Figure:
@@ -103,7 +109,12 @@ def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
     files = [save(attractor_figure(), folder / "attractor.png")]
     main = [r for r in results if r.config.controller == "stack" and not r.config.variant and r.metrics]
     if groups := _rmse_groups(main):
-        files.append(save(compare(groups, "RMSE, mm", "Tracking error: pliant (bars), paper (diamonds), target (lines)"), folder / "rmse.png"))
+        files.append(
+            save(
+                compare(groups, "RMSE, mm", "Tracking error: pliant (bars), paper (diamonds), target (lines)"),
+                folder / "rmse.png",
+            )
+        )
     balance = [r for r in results if r.config.case == "balance" and r.metrics]
     if len(balance) > 1:
         files.append(save(_balance(balance), folder / "balance.png"))
@@ -123,7 +134,13 @@ def _balance(results: Sequence[Result]) -> Figure:
     curves = {axis: np.array([_value(r, f"RMSE {axis}") for r in results]) for axis in "xyz"}
     order = np.argsort(forces)
     ordered = {f"tool, {axis}": values[order] for axis, values in curves.items()}
-    return sweep(forces[order], ordered, "F_max of the elbow's task, N", "RMSE of the tool, mm", "The stronger the elbow, the more it leaks into the tool")
+    return sweep(
+        forces[order],
+        ordered,
+        "F_max of the elbow's task, N",
+        "RMSE of the tool, mm",
+        "The stronger the elbow, the more it leaks into the tool",
+    )
 
 
 def _value(result: Result, name: str) -> float:
@@ -155,7 +172,9 @@ def _converging(profile: ForceProfile, error: Array) -> Array:
     return values
 
 
-def _trajectory(profile: ForceProfile, law: Law, start: float, mass: float = 2.0, period: float = 1e-3) -> tuple[Array, Array]:
+def _trajectory(
+    profile: ForceProfile, law: Law, start: float, mass: float = 2.0, period: float = 1e-3
+) -> tuple[Array, Array]:
     """Error and its rate of a free mass released at an error."""
     attract = Attractor(period, np.array([0.5e-3]), law)
     x, v = start, 0.0

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
+import numpy.typing as npt
 
 from pliant import loop
 from pliant.robot import Robot
@@ -57,7 +58,7 @@ def measure(config: StackConfig, robot: Robot, log: Log) -> tuple[Metric, ...]:
     return (*found, *_attractor(config, log, pliant))
 
 
-def window(config: StackConfig, log: Log) -> Array:
+def window(config: StackConfig, log: Log) -> npt.NDArray[np.bool_]:
     """Mask of the samples that count."""
     return metrics.between(log.time("measurement/q"), config.settled)
 
@@ -85,7 +86,12 @@ def _rmse_without_wall(config_json: str) -> tuple[float, float, float]:
     wired = build(config)
     recorder = Recorder(None)
     loop.run(
-        wired.plant, wired.estimator, wired.source, wired.controller, range(round(config.duration / config.period)), [recorder]
+        wired.plant,
+        wired.estimator,
+        wired.source,
+        wired.controller,
+        range(round(config.duration / config.period)),
+        [recorder],
     )
     x, y, z = tracking_rmse(config, recorder.log())
     return float(x), float(y), float(z)

@@ -59,7 +59,11 @@ class StackStudy(Study[StackConfig]):
 
 def _with_elbow(config: StackConfig, force: float) -> StackConfig:
     """The same run with another strength of the elbow's task; 0 N switches it off."""
-    elbow = {"force_max": force, "stiffness": 0.0} if force == 0.0 else {"force_max": force, "linear_range": min(0.01, 0.5 * force / 5000.0)}
+    elbow = (
+        {"force_max": force, "stiffness": 0.0}
+        if force == 0.0
+        else {"force_max": force, "linear_range": min(0.01, 0.5 * force / 5000.0)}
+    )
     control = {"tasks": {**config.control.get("tasks", {}), "elbow": {"translation": elbow}}}
     return merged(config, {"control": control, "variant": f"elbow-{force:g}N"})
 
