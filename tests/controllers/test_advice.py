@@ -46,7 +46,7 @@ def test_slow_actuators() -> None:
 
 
 def test_a_sharp_knee_leaks_what_is_said(lwr4: Robot) -> None:
-    """An error that grows at a constant speed: over the knee, the sampled force absorbs less than the profile stores."""
+    """An error that grows at a constant speed: past the knee, the sampled force absorbs less than is stored."""
     ee = TABLE_I_SIMULATION.frame_tasks()[0].tuning
     inertia = smallest_inertia(lwr4, "flange")
     found = [advice for advice in advise(ee, 1e-3, inertia) if advice.rule == "knee"]

@@ -65,7 +65,7 @@ def run_mass(
     noise: float = 0.0,
     settings: PhaseSettings | None = None,
 ) -> MassRun:
-    """A mass pulled by one impedance axis; the force is held over each period, the motion in between runs in ten steps."""
+    """A mass pulled by one impedance axis: the force is held over each period, the motion runs in ten steps."""
     attractor = Attractor(period, np.array([5e-4]), law, settings or PhaseSettings())
     rng = np.random.default_rng(3)
     x, v, state = -start, 0.0, None

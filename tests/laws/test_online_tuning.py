@@ -97,7 +97,7 @@ def test_the_ledger_balances_and_books_what_tuning_injects(lwr4: Robot) -> None:
 
 
 def test_the_ledger_agrees_with_the_work_in_the_joints(lwr4: Robot) -> None:
-    """`delivered` is booked from errors and references; ∫τ·v reached the joints. They differ to first order in the period."""
+    """`delivered` is booked from errors and references; ∫τ·v reached the joints: the same to first order."""
     off = []
     for period in (1e-3, 5e-4):
         log = simulate(lwr4, Law.CAPPED, 10**9, 1.0, 7, period)

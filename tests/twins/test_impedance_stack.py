@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.twins.impedance_twin import TwinTask
 
 from pliant import _impedance
 from pliant.controllers.attractor import Law, PhaseSettings
@@ -12,6 +11,7 @@ from pliant.controllers.energy_ledger import Diagnostics, channel_table
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array, exp3
+from tests.twins.impedance_twin import TwinTask
 
 PERIOD = 1e-3
 SETTINGS = PhaseSettings()
