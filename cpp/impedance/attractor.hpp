@@ -14,6 +14,7 @@ struct AttractorConfig {
   double noise_gain;     // share of a new sample in the noise variance, 0..1
   double noise_to_rate;  // 1/s: std of the low-passed rate per std of a white error
   double hold_limit;     // s
+  double blend_step;     // share of the step of the force, where convergence ends, that one period takes away
 };
 
 // State of one axis between two ticks; doubles only. `error_2`, `error_3` are the errors before `error`.
@@ -28,6 +29,8 @@ struct AxisState {
   double absorbed;  // J, integral of h d(error)
   double injected;  // J, by changes of the tuning
   double energy_start;
+  double gap;    // force that was missing when convergence was left, N or N m
+  double blend;  // share of it that is still missing, 1..0
 };
 
 inline double clip_noise(double noise, double floor) { return 9.0 * noise + floor; }
@@ -90,9 +93,22 @@ inline double converging_force(Law law, Shape shape, const Axis& p, double error
   return law == Law::StackCorrected ? towards_target : -towards_target;
 }
 
-inline double force(const AttractorConfig& c, Shape shape, const Axis& p, const AxisState& s, double error) {
+inline double law_force(const AttractorConfig& c, Shape shape, const Axis& p, const AxisState& s, double error) {
   if (s.converging == 0.0) return signed_force(shape, p, error);
   return converging_force(c.law, shape, p, error, s.turning);
+}
+
+// The force of the law, less what is still missing of the step that it makes where convergence ends. `left` says whether
+// convergence ended at this tick; s.force is still the force of the last one.
+inline void update_force(const AttractorConfig& c, Shape shape, const Axis& p, AxisState& s, double error, bool left) {
+  const double law = law_force(c, shape, p, s, error);
+  if (left) {
+    s.gap = law - s.force;
+    s.blend = 1.0;
+  }
+  s.blend = std::max(s.blend - c.blend_step, 0.0);
+  s.force = law;
+  if (s.blend > 0.0) s.force = std::min(std::max(law - s.blend * s.gap, -p.force_max), p.force_max);
 }
 
 // Energy that can still leave the error port: E while diverging, E(x_m) minus what the convergence gave back so far.

@@ -116,9 +116,9 @@ Shape shape_named(const std::string& name) {
 
 // tasks: one (axes, profile name, m/s floor, rad/s floor, moves) each.
 void build(Stack* self, const std::string& law, double period, double rate_gain, double noise_gain, double hold_limit,
-           ConstVector torque_limit, nb::list tasks) {
+           double blend_step, ConstVector torque_limit, nb::list tasks) {
   const double noise_to_rate = rate_gain / period * std::sqrt(2.0 / (2.0 - rate_gain));
-  const AttractorConfig config{law_named(law), period, rate_gain, noise_gain, noise_to_rate, hold_limit};
+  const AttractorConfig config{law_named(law), period, rate_gain, noise_gain, noise_to_rate, hold_limit, blend_step};
   std::vector<TaskConfig> list;
   for (nb::handle item : tasks) {
     const auto t = nb::cast<nb::tuple>(item);
@@ -142,7 +142,7 @@ NB_MODULE(_impedance, m) {
   m.doc() = "Compiled core of the stack of fractal impedance tasks; `pliant.controllers.stack` is its typed face.";
   nb::class_<Stack>(m, "Stack")
       .def("__init__", &build, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
-           nb::arg("hold_limit"), nb::arg("torque_limit"), nb::arg("tasks"))
+           nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("torque_limit"), nb::arg("tasks"))
       .def_prop_ro("state_size", &Stack::state_size)
       .def_prop_ro("output_size", &Stack::output_size)
       .def("step", &step, nb::arg("memory"), nb::arg("out"), nb::arg("q"), nb::arg("J"), nb::arg("actual"),

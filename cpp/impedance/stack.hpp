@@ -120,8 +120,9 @@ class Stack {
         step_error(task, p, s, in.retune, i, error[i], floor, restart);
       }
       const double threshold = rate_threshold(config_, s, floor);
+      const bool converged = s.converging != 0.0;
       update_phase(config_, s, error[i], threshold);
-      s.force = force(config_, task.shape, p, s, error[i]);
+      update_force(config_, task.shape, p, s, error[i], converged && s.converging == 0.0);
       const double stored = energy(task.shape, p, error[i]);
       const double margin = s.absorbed + s.injected - (stored - s.energy_start);
       const double row[7] = {s.force, error[i], s.rate, threshold, s.converging, s.turning, margin};
@@ -147,7 +148,7 @@ class Stack {
     if (restart) {  // another branch of the logarithm, or another set of axes: the same pose, not a motion
       s.injected += energy(task.shape, p, error) - energy(task.shape, p, s.error);
       s.error = s.error_2 = s.error_3 = error;
-      s.rate = 0.0;
+      s.rate = s.blend = 0.0;
       diverge(s, error);
     } else {
       s.absorbed += s.force * (error - s.error);

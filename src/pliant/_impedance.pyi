@@ -16,6 +16,7 @@ class Stack:
         rate_gain: float,
         noise_gain: float,
         hold_limit: float,
+        blend_step: float,
         torque_limit: NDArray[float64],
         tasks: list[tuple[int, str, float, float, list[bool]]],
     ) -> None:
@@ -26,6 +27,7 @@ class Stack:
             rate_gain: share of a new difference in the filtered rate.
             noise_gain: share of a new sample in the noise variance.
             hold_limit: s.
+            blend_step: share of the force's step at the end of a convergence that one period takes away.
             torque_limit: (n,) N·m, may be infinite.
             tasks: (axes, profile, rate floor in m/s, rate floor in rad/s, which joints move the frame) each.
         """

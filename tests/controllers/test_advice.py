@@ -68,7 +68,7 @@ def test_the_default_stack_is_safe_at_1_kHz_and_not_at_100_Hz(lwr4: Robot) -> No
         inertia = smallest_inertia(lwr4, task.frame)[: task.axes]
         assert advise(task.tuning, 1e-3, inertia) == []
         slow = sentences(advise(task.tuning, 1e-2, inertia))
-        assert task.label != "ee" or any(text.startswith("axis 0, 1, 2: stiffness 15000") for text in slow)
+        assert task.label != "ee" or any(text.startswith("axis 0, 1, 2: stiffness 20000") for text in slow)
 
 
 def test_the_smallest_inertia_is_a_bound_that_is_reached(lwr4: Robot) -> None:

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from pliant.controllers.attractor import Attractor, Law, PhaseSettings
+from pliant import _impedance
+from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.energy_ledger import channel_table
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
@@ -60,27 +62,47 @@ def run_mass(
     mass: float = 1.5,
     damping: float = 0.0,
     start: float = 0.01,
-    load: float = 0.0,
+    load: Any = 0.0,
     target: Any = lambda t: 0.0,
     noise: float = 0.0,
     settings: PhaseSettings | None = None,
 ) -> MassRun:
-    """A mass pulled by one impedance axis: the force is held over each period, the motion runs in ten steps."""
-    attractor = Attractor(period, np.array([5e-4]), law, settings or PhaseSettings())
-    rng = np.random.default_rng(3)
-    x, v, state = -start, 0.0, None
-    rows: list[tuple[float, ...]] = []
-    for k in range(round(seconds / period)):
-        error = np.array([target(k * period) - x])
-        seen = error + noise * rng.standard_normal(1)
-        state = attractor.init(seen) if state is None else state
-        h, state = attractor.step(profile, seen, state)
-        threshold = float(attractor.threshold(state)[0])
-        rows.append((error[0], h[0], v, float(state.converging[0]), threshold, float(state.rate[0])))
-        for _ in range(10):
-            dt = period / 10
-            a = (h[0] + load) / mass
-            decay = np.exp(-damping / mass * dt)
-            x += v * dt + 0.5 * a * dt * dt if damping == 0.0 else v * dt
-            v = v * decay + a * dt * (1.0 if damping == 0.0 else (1.0 - decay) * mass / (damping * dt))
+    """A mass pulled by one axis of the compiled core; the force is held over each period, the motion is exact."""
+    settings = settings or PhaseSettings()
+    core = _impedance.Stack(
+        law=law.value,
+        period=period,
+        rate_gain=settings.rate_gain(period),
+        noise_gain=settings.noise_gain(period),
+        hold_limit=settings.hold_limit,
+        blend_step=settings.blend_step(period),
+        torque_limit=np.array([np.inf]),
+        tasks=[(3, profile.shape.value, settings.rate_floor, settings.rate_floor_angular, [True])],
+    )
+    numbers = (profile.stiffness, profile.force_max, profile.range, profile.linear_range)
+    tuning = np.concatenate([[number[0], 0.0, 0.0] for number in numbers])
+    table = channel_table(1, [("axis", 3)])
+    columns = [table[f"axis/{name}"].start for name in ("force", "phase", "rate_threshold", "rate")]
+    memory, out = np.zeros(core.state_size), np.zeros(core.output_size)
+    origin, q, J = (np.zeros(3), None), np.zeros(1), np.zeros((6, 1), order="F")
+    steps = round(seconds / period)
+    seen_noise = noise * np.random.default_rng(3).standard_normal(steps)
+    push = load if callable(load) else lambda t: load
+    x, v, rows = -start, 0.0, []
+    for k in range(steps):
+        t = k * period
+        error = target(t) - x
+        seen = np.array([error + seen_noise[k], 0.0, 0.0])
+        core.step(memory, out, q, J, origin, (seen, None), None, ((0, tuning),) if k == 0 else None)
+        h, converging, threshold, rate = out[columns]
+        rows.append((error, h, v, converging, threshold, rate))
+        x, v = moved(x, v, h + push(t), mass, damping, period)
     return MassRun(*np.array(rows).T)
+
+
+def moved(x: float, v: float, force: float, mass: float, damping: float, period: float) -> tuple[float, float]:
+    """Position and velocity of a damped mass after a period under a constant force."""
+    if damping == 0.0:
+        return x + v * period + 0.5 * force / mass * period**2, v + force / mass * period
+    final, decay = force / damping, np.exp(-damping / mass * period)
+    return x + final * period + (v - final) * (1.0 - decay) * mass / damping, final + (v - final) * decay

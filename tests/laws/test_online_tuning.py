@@ -107,7 +107,7 @@ def test_the_ledger_agrees_with_the_work_in_the_joints(lwr4: Robot) -> None:
         assert np.abs(booked).max() > 0.5
         off.append(np.abs(booked - work).max())
     assert off[1] < 0.6 * off[0]
-    assert off[0] < 0.3
+    assert off[0] < 0.5
 
 
 def test_a_margin_of_a_plain_spring_goes_below_zero(lwr4: Robot) -> None:

@@ -26,7 +26,13 @@ def core(law: Law, shapes: list[Shape], axes: list[int], limit: float = np.inf) 
     gains = {"rate_gain": SETTINGS.rate_gain(PERIOD), "noise_gain": SETTINGS.noise_gain(PERIOD)}
     limits = np.full(JOINTS, limit)
     return _impedance.Stack(
-        law=law.value, period=PERIOD, hold_limit=SETTINGS.hold_limit, torque_limit=limits, tasks=tasks, **gains
+        law=law.value,
+        period=PERIOD,
+        hold_limit=SETTINGS.hold_limit,
+        blend_step=SETTINGS.blend_step(PERIOD),
+        torque_limit=limits,
+        tasks=tasks,
+        **gains,
     )
 
 

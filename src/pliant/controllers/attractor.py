@@ -47,14 +47,18 @@ class PhaseSettings:
     """s over which the noise of the error is learned; the threshold is at least 3σ of the filtered rate"""
     hold_limit: float = 0.030
     """s for which a phase is held while the rate is too small to tell; then the axis diverges"""
+    blend_time: float = 0.008
+    """s over which the force steps up where a convergence ends; 0: at once. Keep it much shorter than a swing, then it
+    costs no damping, and the joints feel no jolt"""
 
     def __post_init__(self) -> None:
         for name in ("rate_cutoff", "rate_floor", "rate_floor_angular", "noise_time"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ConfigError(f"{name} must be finite and above zero, got {value}")
-        if not self.hold_limit >= 0.0:
-            raise ConfigError(f"hold_limit must not be negative, got {self.hold_limit}")
+        for name in ("hold_limit", "blend_time"):
+            if not getattr(self, name) >= 0.0:
+                raise ConfigError(f"{name} must not be negative, got {getattr(self, name)}")
 
     def rate_gain(self, period: float) -> float:
         """Share of a new difference in the filtered rate, for a period in s."""
@@ -63,6 +67,10 @@ class PhaseSettings:
     def noise_gain(self, period: float) -> float:
         """Share of a new sample in the noise variance, for a period in s."""
         return -math.expm1(-period / self.noise_time)
+
+    def blend_step(self, period: float) -> float:
+        """Share of the force's step that one period in s takes away."""
+        return min(1.0, period / self.blend_time) if self.blend_time > 0.0 else 1.0
 
     def noise_to_rate(self, period: float) -> float:
         """1/s: standard deviation of the filtered rate per standard deviation of a white error."""
@@ -89,6 +97,12 @@ class AttractorState:
     """low-passed d(error)/dt, m/s or rad/s"""
     noise: Array
     """variance of the noise of the error, m² or rad²"""
+    force: Array
+    """h of the last tick, N or N·m"""
+    gap: Array
+    """force that was missing when the convergence ended, N or N·m"""
+    blend: Array
+    """share of the gap that is still missing, 1…0"""
 
 
 @dataclass(frozen=True)
@@ -106,20 +120,29 @@ class Attractor:
         """Starts diverging, with x_m = x̃. Args: error (k,) m or rad."""
         zero = np.zeros_like(error)
         noise = (self.floor / (3.0 * self.settings.noise_to_rate(self.period))) ** 2
-        return AttractorState(error, np.zeros(error.shape, dtype=np.bool_), zero, (error, error, error), zero, noise)
+        return AttractorState(
+            error, np.zeros(error.shape, dtype=np.bool_), zero, (error, error, error), zero, noise, zero, zero, zero
+        )
 
     def step(self, profile: ForceProfile, error: Array, state: AttractorState) -> tuple[Array, AttractorState]:
         """The force (k,) in N or N·m for the error of this tick (k,), and the next state."""
+        converged = state.converging
         state = self._sense(error, state)
         state = self._switch(error, state)
-        return self.force(profile, error, state), replace(state, errors=(error, *state.errors[:2]))
+        law = self.law_force(profile, error, state)
+        left = converged & ~state.converging
+        gap = np.where(left, law - state.force, state.gap)
+        blend = np.maximum(np.where(left, 1.0, state.blend) - self.settings.blend_step(self.period), 0.0)
+        blended = np.clip(law - blend * gap, -profile.force_max, profile.force_max)
+        force = np.where(blend > 0.0, blended, law)
+        return force, replace(state, errors=(error, *state.errors[:2]), force=force, gap=gap, blend=blend)
 
     def threshold(self, state: AttractorState) -> Array:
         """ε (k,), m/s or rad/s: rates of |x̃| below it do not tell the direction."""
         return np.maximum(self.floor, 3.0 * self.settings.noise_to_rate(self.period) * np.sqrt(state.noise))
 
-    def force(self, profile: ForceProfile, error: Array, state: AttractorState) -> Array:
-        """h (k,), N or N·m, for a given phase."""
+    def law_force(self, profile: ForceProfile, error: Array, state: AttractorState) -> Array:
+        """The force of the law alone (k,), N or N·m, for a given phase."""
         turning = np.where(state.converging, state.turning, 1.0)  # 1.0: any number that is not zero
         back = converging_force(self.law, profile, error, turning)
         return np.where(state.converging, back, profile.force(error))

@@ -26,7 +26,7 @@ class TranslationConfig(ControllerConfig):
     stiffness: PerAxis = Field(
         default=2500.0,
         description="K_0: force per error near the target; x, y, z or one for all",
-        json_schema_extra={"unit": "N/m", "minimum": 0.0, "maximum": 20000.0},
+        json_schema_extra={"unit": "N/m", "minimum": 0.0, "maximum": 30000.0},
     )
     force_max: PerAxis = Field(
         default=100.0,
@@ -124,6 +124,12 @@ class PhaseConfig(ControllerConfig):
         default=0.030,
         ge=0.0,
         description="how long a phase is held while the rate tells nothing; then the axis diverges",
+        json_schema_extra={"unit": "s"},
+    )
+    blend_time: float = Field(
+        default=0.008,
+        ge=0.0,
+        description="time over which the force steps up where a convergence ends; 0: at once",
         json_schema_extra={"unit": "s"},
     )
 

@@ -11,7 +11,7 @@ def _stack(end_effector: TranslationConfig, rotation: RotationConfig, elbow: Tra
 
 
 STIFF_STACK = _stack(
-    TranslationConfig(stiffness=15000.0, linear_range=0.007, range=0.02, force_max=150.0),
+    TranslationConfig(stiffness=20000.0, linear_range=0.006, range=0.02, force_max=150.0),
     RotationConfig(stiffness=300.0, linear_range=0.25, range=0.63, force_max=100.0),
     TranslationConfig(stiffness=5000.0, linear_range=0.01, range=0.02, force_max=50.0),
 )

@@ -97,6 +97,7 @@ class Stack(Controller[StackState]):
             rate_gain=self.phases.rate_gain(period),
             noise_gain=self.phases.noise_gain(period),
             hold_limit=self.phases.hold_limit,
+            blend_step=self.phases.blend_step(period),
             torque_limit=robot.torque_limit,
             tasks=[
                 (
