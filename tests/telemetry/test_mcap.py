@@ -131,8 +131,8 @@ SIZES = {"sensor_msgs/msg/JointState": (3, 0, 3), "std_msgs/msg/Float64MultiArra
 
 @pytest.mark.parametrize("datatype", sorted(set(DEFINITIONS) - {"std_msgs/msg/String"}))
 def test_a_filled_template_is_what_the_library_encodes(datatype: str) -> None:
-    names = ["a", "bcd", "e"]
-    made = template(datatype, SIZES.get(datatype, ()), "frame", [names])
+    names = ("a", "bcd", "e")
+    made = template(datatype, SIZES.get(datatype, ()), "frame", names)
     numbers = np.random.default_rng(1).standard_normal(len(made.offsets))
     filled = bytearray(made.data)
     for offset, number in zip(made.offsets, numbers, strict=True):

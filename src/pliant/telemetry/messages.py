@@ -12,6 +12,7 @@ import math
 import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import mcap.reader
@@ -100,7 +101,8 @@ def encode(datatype: str, message: Mapping[str, Any]) -> bytes:
     raise AssertionError("an MCAP file with one message gave none back")
 
 
-def template(datatype: str, sizes: Sequence[int], frame_id: str = "", labels: Sequence[Sequence[str]] = ()) -> Template:
+@lru_cache(maxsize=1024)  # the library takes half a millisecond per topic; runs of one study have the same ones
+def template(datatype: str, sizes: tuple[int, ...], frame_id: str = "", names: tuple[str, ...] = ()) -> Template:
     """The template of a topic.
 
     Args:
@@ -108,9 +110,8 @@ def template(datatype: str, sizes: Sequence[int], frame_id: str = "", labels: Se
         sizes: what a message holds. JointState: entries of position, velocity, effort (0 for none); Float64MultiArray:
             its shape; not used for types of a fixed size.
         frame_id: of the header.
-        labels: one list of names; of the joints of a JointState, of the entries of an array.
+        names: of the joints of a JointState, of the entries of an array.
     """
-    names = list(labels[0]) if labels else []
     marked = message(datatype, _marks(), sizes, frame_id, names, (_SECONDS, _NANOSECONDS))
     data = encode(datatype, marked)
     offsets: list[int] = []

@@ -100,9 +100,9 @@ def _joint_states(signal: str, left: dict[str, Channel]) -> list[Topic]:
     given = [channel for channel in chosen if channel is not None]
     if not given:
         return []
-    sizes = [0 if channel is None else channel.size for channel in chosen]
+    sizes = tuple(0 if channel is None else channel.size for channel in chosen)
     datatype = "sensor_msgs/msg/JointState"
-    made = template(datatype, sizes, labels=[given[0].labels])
+    made = template(datatype, sizes, names=given[0].labels)
     return [Topic(f"{PREFIX}/{signal}/joint_states", datatype, made, tuple((c, _in_order(c)) for c in given))]
 
 
@@ -129,7 +129,7 @@ def _single(channel: Channel) -> Topic:
         made = template(datatype, (), _frame_id(channel.name))
     else:
         datatype = "std_msgs/msg/Float64MultiArray"
-        made = template(datatype, channel.shape, labels=[channel.labels])
+        made = template(datatype, channel.shape, names=channel.labels)
     return Topic(topic_name(channel.name), datatype, made, ((channel, _in_order(channel)),))
 
 

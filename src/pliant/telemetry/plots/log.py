@@ -55,7 +55,11 @@ def figures(log: Log) -> dict[str, Figure]:
         panels = [
             Panel(
                 "energy, J",
-                [Curve(n.rpartition("/")[2], log.time(n), log[n]) for n in energies if n.startswith(base)],
+                [
+                    Curve(n.rpartition("/")[2].removeprefix("energy_"), log.time(n), log[n])
+                    for n in energies
+                    if n.startswith(base)
+                ],
                 base,
             )
             for base in dict.fromkeys(name.rpartition("/")[0] for name in energies)
@@ -75,7 +79,7 @@ def _frame(log: Log, frame: str, title: str) -> dict[str, Figure]:
             for i, axis in enumerate("xyz")
         ]
         found[f"{frame}_error"] = time_series(panels, title, log.phases())
-        plane = _plane(log[reference])
+        plane = _plane(np.concatenate((log[reference], log[actual])))
         found[f"{frame}_path"] = task_path([Path2D("actual", log[actual])], log[reference], plane, title, by_error=True)
     panels = [_force_panel(log, frame, axis) for axis in range(3)]
     if any(len(panel.curves) > 1 for panel in panels):
@@ -93,8 +97,8 @@ def _force_panel(log: Log, frame: str, axis: int) -> Panel:
     return Panel(f"{'xyz'[axis]}: force, N", curves, least_height=0.5)
 
 
-def _plane(reference: np.ndarray) -> tuple[int, int]:
-    """The two world axes along which a path extends most; horizontal ones first."""
-    spans = np.ptp(reference, axis=0)
+def _plane(points: np.ndarray) -> tuple[int, int]:
+    """The two world axes along which a path and its reference extend most; horizontal ones first."""
+    spans = np.nanmax(points, axis=0) - np.nanmin(points, axis=0)
     first, second = sorted(np.argsort(-spans, kind="stable")[:2].tolist())
     return first, second
