@@ -5,9 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
+from pliant import _mpc
+from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.config import Contact, MpcConfig
+from pliant.mpc.controller import kernel_model, kernel_solver
 from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.horizon import HorizonReference
 from pliant.mpc.nodes import NodeParameters
+from pliant.mpc.problem import MpcProblem, problem_from_robot
 from pliant.robot import Robot, Tool
 from pliant.spatial import Array
 
@@ -78,3 +83,34 @@ def random_posture(model: pin.Model, rng: np.random.Generator) -> Array:
 def random_state(model: pin.Model, extra: int, rng: np.random.Generator) -> Array:
     """(nx,)."""
     return np.concatenate([random_posture(model, rng), rng.normal(size=model.nv), 3.0 * rng.normal(size=extra)])
+
+
+def posed(
+    robot: Robot, config: MpcConfig, offset: Array, force: float, phase: str = "circle"
+) -> tuple[MpcProblem, _mpc.Chain, _mpc.Solver]:
+    """A kernel solver whose task is to be `offset` (3,) m from home, pressing with `force` N in a phase."""
+    problem, chain = problem_from_robot(robot, config), chain_from_robot(robot, config.frame)
+    solver = kernel_solver(problem, chain, kernel_model(problem))
+    position, R = robot.placement(robot.home, config.frame)
+    count = config.horizon + 1
+    wrench = np.tile([0.0, 0.0, force, 0.0, 0.0, 0.0], (count, 1))
+    reference = HorizonReference(
+        np.tile(position + offset, (count, 1)),
+        np.tile(R, (count, 1, 1)),
+        np.zeros((count, 6)),
+        wrench,
+        None,
+        (phase,) * count,
+    )
+    problem.write_constants(solver.nodes)
+    problem.write_phases(solver.nodes, reference.phase)
+    problem.write_references(solver.nodes, reference, robot.home)
+    solver.nodes.anchor_translation[...] = position
+    return problem, chain, solver
+
+
+def start_state(problem: MpcProblem, robot: Robot, rng: np.random.Generator, spread: float = 0.05) -> Array:
+    """(nx,) near home, moving, pressing."""
+    extra = {"force_feedback": 20.0 * np.ones(problem.m), "torque_feedback": np.zeros(robot.n)}
+    q, v = robot.home + spread * rng.normal(size=robot.n), 0.1 * rng.normal(size=robot.n)
+    return np.concatenate([q, v, extra.get(problem.config.kind, np.zeros(0))])

@@ -98,13 +98,13 @@ class WrenchEstimator(Estimator[WrenchState]):
         """(6,) world axes, of a reading (6,) in the sensor's axes."""
         if frame not in self._frames:
             self._frames[frame] = self.robot.frame_id(frame)
-        R_world_sensor = self._data.oMf[self._frames[frame]].rotation
+        R_world_sensor: Array = np.array(self._data.oMf[self._frames[frame]].rotation)
         wrench = np.concatenate([R_world_sensor @ reading[:3], R_world_sensor @ reading[3:]])
         carried = self.carried.get(frame)
         if carried is None or carried.mass == 0.0:
             return wrench
-        weight = carried.mass * np.array(self._model.gravity.linear)
-        lever = R_world_sensor @ np.array(carried.center)
+        weight: Array = carried.mass * np.array(self._model.gravity.linear)
+        lever: Array = R_world_sensor @ np.array(carried.center)
         return wrench - np.concatenate([weight, np.cross(lever, weight)])
 
     def _above(self, frame: str, wrench: Array, time: float, state: WrenchState) -> float:

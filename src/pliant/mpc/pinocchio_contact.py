@@ -22,8 +22,7 @@ class ContactMotion:
     velocity_q: Array
     """(m, nv) ∂(J v)/∂q"""
     acceleration: Array
-    """(m,) d(J v)/dt = J v̇ + J̇ v: in axes that stand still the classical acceleration, in the frame's own axes
-    the spatial one"""
+    """(m,) d(J v)/dt = J v̇ + J̇ v: the classical acceleration in axes that stand still, else the spatial one"""
     acceleration_q: Array
     """(m, nv), at constant v̇"""
     acceleration_v: Array

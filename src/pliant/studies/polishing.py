@@ -1,7 +1,8 @@
 """Polishing: reach a table, press with 50 N, draw a circle under predictive control.
 
-Source of the task: [FFMPC] Kleff, Jordana, Mansard, Righetti, "Force feedback in model predictive control: a soft contact
-approach", 2024, section VI. What the paper leaves open (height of the table, tool, ramps) is in the configuration.
+Source of the task: [FFMPC] Kleff, Jordana, Mansard, Righetti, "Force feedback in model predictive control: a soft
+contact approach", 2024, section VI. What the paper leaves open (height of the table, tool, ramps) is in the
+configuration.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from pydantic import Field
 from pliant.entries import ControllerEntry, find_entry
 from pliant.errors import ConfigError
 from pliant.estimation import WrenchEstimator
-from pliant.mpc import CONTROLLERS, MpcConfig, MpcController
+from pliant.mpc import CONTROLLERS, MpcConfig
 from pliant.references.phases import Lookahead, PhasedSource, TaskPhase
 from pliant.references.shapes import circle
 from pliant.references.steps import Waypoints, wrench_steps
@@ -94,7 +95,7 @@ class PolishingConfig(CaseConfig):
     task: Task = Task()
     preset: Literal["tuned", "paper"] = Field(
         default="tuned",
-        description="parameters that `control` starts from: tuned for this plant, or the weights of the paper's authors",
+        description="what `control` starts from: tuned for this plant, or the weights of the paper's authors",
     )
     control: dict[str, Any] = Field(
         default={}, description="changes to the controller's parameters, e.g. control.contact.stiffness=[1e4]"
@@ -135,7 +136,9 @@ class Polishing(Study[PolishingConfig]):
     title = "press on a table and draw a circle: classical, torque-feedback and force-feedback MPC"
     cases = MappingProxyType({"ideal": PolishingConfig(case="ideal")})
 
-    controllers = tuple(CONTROLLERS)
+    @property
+    def controllers(self) -> Sequence[str]:
+        return tuple(CONTROLLERS)
 
     def runs(self, case: str, seeds: int | None = None) -> Sequence[PolishingConfig]:
         tuned = [self.case(case).model_copy(update={"controller": name}) for name in CONTROLLERS]
@@ -147,7 +150,8 @@ class Polishing(Study[PolishingConfig]):
     def build(self, config: PolishingConfig) -> Experiment:
         robot = Robot.load(config.robot, locked=config.locked, tool=Tool(frame=FRAME)).with_contact(FRAME, BALL_RADIUS)
         parameters = config.parameters()
-        controller: MpcController = config.entry.build(robot, parameters, config.period)
+        controller = config.entry.build(robot, parameters, config.period)
+        channels: Mapping[str, Any] = getattr(controller, "channels", {})
         surface = Surface(config.table.stiffness, config.table.damping, config.table.friction)
         point = (config.table.x, 0.0, config.table.height)
         plant = MujocoPlant(
@@ -164,7 +168,7 @@ class Polishing(Study[PolishingConfig]):
             estimator=WrenchEstimator(robot),
             source=polishing_source(config, robot, Lookahead(parameters.horizon, parameters.dt)),
             controller=controller,
-            channels=tuple(Channel(name, about.unit) for name, about in controller.channels.items()),
+            channels=tuple(Channel(name, about.unit) for name, about in channels.items()),
             warnings=config.entry.advise(robot, parameters, config.period),
         )
 
@@ -173,6 +177,7 @@ class Polishing(Study[PolishingConfig]):
         time = log.time(f"truth/{FRAME}/wrench")
         circling = measure.between(time, config.task.circle)
         touching = measure.between(time, config.task.pressed)
+        landing = measure.between(time, config.task.reach, config.task.touch + 0.1)
         force = log[f"truth/{FRAME}/wrench"][:, 2]
         wanted = log[f"reference/{FRAME}/wrench"][:, 2]
         position, reference = log[f"truth/{FRAME}/position"][:, :2], log[f"reference/{FRAME}/position"][:, :2]
@@ -184,7 +189,7 @@ class Polishing(Study[PolishingConfig]):
             ),
             Metric("λ_max", measure.peak(force[circling]), "N"),
             Metric("t_break", 100.0 * measure.break_share(force[touching]), "%", target=0.0 if best else None),
-            Metric("first contact peak", measure.peak(force[~touching]), "N"),
+            Metric("first contact peak", measure.peak(force[landing]), "N"),
             Metric("KKT reached", 100.0 * float(np.mean(log["mpc/status"] == 0.0)), "%"),
             Metric("iterations", float(np.mean(log["mpc/iterations"])), "1"),
         )
@@ -213,9 +218,9 @@ def polishing_source(config: PolishingConfig, robot: Robot, lookahead: Lookahead
     if any(late <= early for early, late in zip([0.0, *ends], ends, strict=False)):
         raise ConfigError(f"reach, touch, pressed and circle must increase, got {ends}")
     surface = np.array([config.table.x, start[1], config.table.height + BALL_RADIUS])
-    above = surface + [0.0, 0.0, task.above]
+    above = surface + np.array([0.0, 0.0, task.above])
     descent = task.touch - task.reach
-    below = surface - [0.0, 0.0, task.above]  # where a descent that nothing stops would end
+    below = surface - np.array([0.0, 0.0, task.above])  # where a descent that nothing stops would end
     down = [above, surface, below] if task.found else [above, surface]
     times = [0.0, descent, 2.0 * descent][: len(down)]
     at_touch = Hold(np.zeros(3))

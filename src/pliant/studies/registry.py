@@ -10,6 +10,7 @@ from pliant.studies.base import Study
 
 _MODULES = {
     "stack": "pliant.studies.stack",
+    "polishing": "pliant.studies.polishing",
 }
 """name → module with a `STUDY`; imported when it is asked for"""
 
