@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from pliant.errors import ConfigError
 from pliant.spatial import Array, as_vector
@@ -109,7 +110,7 @@ class ImpedanceTuning:
         if self.linear_range is not None:
             self._check_linear_range(off, self.linear_range)
 
-    def _check_linear_range(self, off: Array, linear_range: Array) -> None:
+    def _check_linear_range(self, off: npt.NDArray[np.bool_], linear_range: Array) -> None:
         for axis in np.flatnonzero(~off):
             K_0, F_max = float(self.stiffness[axis]), float(self.force_max[axis])
             x_0, x_b = float(linear_range[axis]), float(self.range[axis])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -10,7 +10,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressC
 
 
 @contextmanager
-def progress_bar(console: Console, title: str) -> Iterator[Callable[[float], None]]:
+def progress_bar(console: Console, title: str) -> Generator[Callable[[float], None], None, None]:
     """A bar for one run; the function that it yields takes the share that is done, 0…1."""
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as progress:
@@ -19,7 +19,7 @@ def progress_bar(console: Console, title: str) -> Iterator[Callable[[float], Non
 
 
 @contextmanager
-def count_bar(console: Console, title: str, total: int) -> Iterator[Callable[[], None]]:
+def count_bar(console: Console, title: str, total: int) -> Generator[Callable[[], None], None, None]:
     """A bar for many runs; the function that it yields is called after each."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as progress:

@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -96,8 +97,8 @@ def render(
     return None
 
 
-def _pack(snapshots: Sequence[Snapshot], camera: Camera, width: int, height: int) -> dict[str, Array]:
-    job: dict[str, Array] = {
+def _pack(snapshots: Sequence[Snapshot], camera: Camera, width: int, height: int) -> dict[str, Any]:
+    job: dict[str, Any] = {
         "qpos": np.array([snapshot.qpos for snapshot in snapshots]),
         "camera": np.array([*camera.look_at, camera.distance, camera.azimuth, camera.elevation]),
         "size": np.array([width, height]),

@@ -165,13 +165,13 @@ class StackConfig(CaseConfig):
         return self
 
 
-_GAZEBO = {
+_GAZEBO: dict[str, Any] = {
     "joints": Joints(friction=10.0, damping=1.0, compensation="gravity", velocity_filter=0.2),
     # 10 N·m of dry friction in every joint want more than the plain plant does
     "control": {"tasks": {"ee": {"translation": {"stiffness": 20000.0, "force_max": 200.0}}}},
 }
 _HARDWARE = Joints(friction=0.5, damping=0.5, compensation="gravity+coriolis")
-_HARDWARE_LOOP = {"period": 3e-3, "joints": _HARDWARE, "preset": "soft"}
+_HARDWARE_LOOP: dict[str, Any] = {"period": 3e-3, "joints": _HARDWARE, "preset": "soft"}
 
 CASES: Mapping[str, StackConfig] = {
     config.case: config

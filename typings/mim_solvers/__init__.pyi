@@ -1,0 +1,4 @@
+# The compiled module carries no types: everything in it is Any.
+from typing import Any
+
+def __getattr__(name: str) -> Any: ...
