@@ -80,11 +80,18 @@ void evaluate(Engine *engine, const NodeData &data, bool terminal, bool derivati
               NodeOutput &out) {
     Solver<L> &s = solver<L>(engine);
     NodeValues<L> &v = s.current().node[0];
-    memset(static_cast<void *>(&v), 0, sizeof v);
+    memset(static_cast<void *>(&v), 0xff, sizeof v); // NaN everywhere: what the kernel forgets to write shows
     make_stage(data, s.model.data, s.model.disc, s.chain.dof, terminal, s.stages[0]);
     const Row<L> state = s.map.pack(x);
     s.evaluate_node(s.stages[0], state, load_part(u, s.chain.dof, 1), derivatives, v);
-    if (terminal) v.x_next = state;
+    if (terminal) {
+        v.x_next = state;
+        v.acceleration = zero();
+        for (int c = 0; c < s.model.data.contact_dim; ++c) {
+            v.force_rate[c] = 0;
+            if (L::extra != Extra::force) v.force[c] = 0;
+        }
+    }
     const Dense<L> dense(s.map);
     out.cost = v.cost;
     dense.state_row(v.x_next, out.x_next);
@@ -142,9 +149,13 @@ template <class L> void shift(Engine *engine) {
     Iterate<L> &it = s.current();
     for (int k = 0; k < N; ++k) it.x[k] = it.x[k + 1];
     for (int k = 0; k + 1 < N; ++k) it.u[k] = it.u[k + 1];
+    for (int k = 0; s.options.bounds && k < N; ++k) s.multipliers[k] = s.multipliers[k + 1];
 }
 
-template <class L> void reset(Engine *) {}
+template <class L> void reset(Engine *engine) {
+    Solver<L> &s = solver<L>(engine);
+    for (int k = 0; k < s.multipliers.count; ++k) s.multipliers[k] = BoundVector{};
+}
 
 template <class L> void quasi_static(Engine *engine, const NodeData *nodes, const double *x0) {
     Solver<L> &s = solver<L>(engine);

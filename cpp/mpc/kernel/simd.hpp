@@ -162,7 +162,7 @@ PLIANT_INLINE Lanes select_from(int first, const Lanes &from, const Lanes &befor
 }
 
 PLIANT_INLINE double larger(double a, double b) { return a > b ? a : b; }
-PLIANT_INLINE double smaller(double a, double b) { return a < b ? a : b; }
+PLIANT_INLINE int larger(int a, int b) { return a > b ? a : b; }
 PLIANT_INLINE double magnitude(double a) { return __builtin_fabs(a); }
 
 } // namespace pliant::mpc::PLIANT_ISA

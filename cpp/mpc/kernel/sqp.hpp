@@ -8,6 +8,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "bounds.hpp"
 #include "force_feedback.hpp"
 #include "output_force.hpp"
 #include "rest.hpp"
@@ -68,7 +69,9 @@ template <class L> struct Iterate {
     Array<Row<L>> x, gap;
     Array<Lanes> u;
     Array<NodeValues<L>> node;
-    double cost = 0, infeasibility = 0;
+    double cost = 0, gap_sum = 0;
+    double infeasibility = 0; // Σ |gaps| + Σ bound violations
+    double violation = 0;     // ∞-norm
 
     bool allocate(int N) {
         return x.allocate(N + 1) && gap.allocate(N + 1) && u.allocate(N) && node.allocate(N + 1);
@@ -95,11 +98,15 @@ template <class L> class Solver {
         const int N = opts.horizon;
         return iterates[0].allocate(N) && iterates[1].allocate(N) && stages.allocate(N + 1) && factors.allocate(N + 1) &&
                dx.allocate(N + 1) && du.allocate(N) && costates.allocate(N + 1) &&
-               filter_cost.allocate(opts.filter_size) && filter_infeasibility.allocate(opts.filter_size);
+               filter_cost.allocate(opts.filter_size) && filter_infeasibility.allocate(opts.filter_size) &&
+               (!opts.bounds || (bounds.allocate(N + 1) && multipliers.allocate(N + 1) && terms.allocate(N + 1) &&
+                                 expansions.allocate(N + 1)));
     }
 
     void prepare(const NodeData *nodes, int k) {
-        make_stage(nodes[k], model.data, model.disc, chain.dof, k == options.horizon, stages[k]);
+        const bool terminal = k == options.horizon;
+        make_stage(nodes[k], model.data, model.disc, chain.dof, terminal, stages[k]);
+        if (options.bounds) make_stage_bounds(nodes[k], model.data, chain.dof, k == 0, terminal, bounds[k]);
     }
 
     void evaluate_node(const Stage &s, const Row<L> &x, const Lanes &u, bool derivatives, NodeValues<L> &out) const {
@@ -120,6 +127,7 @@ template <class L> class Solver {
 
     Array<StageFactor<L>> factors;
     Array<Stage> stages;
+    Array<BoundVector> multipliers;
 
   private:
     Iterate<L> iterates[2];
@@ -128,11 +136,21 @@ template <class L> class Solver {
     Array<Lanes> du;
     Array<double> filter_cost, filter_infeasibility;
     double regularisation = 0;
+    Array<StageBounds> bounds;
+    Array<BoundTerms> terms;
+    Array<Expansion<L>> expansions;
 
     void evaluate(Iterate<L> &it);
+    const Expansion<L> &expansion(const Iterate<L> &it, int k) const {
+        return options.bounds ? expansions[k] : static_cast<const Expansion<L> &>(it.node[k]);
+    }
     bool backward(const Iterate<L> &it);
     void forward(const Iterate<L> &it);
-    bool search_direction(Report &report);
+    bool newton_step(Report &report);
+    void bounded_values(const Iterate<L> &it, int k, Lanes &torque, double *force) const;
+    double model_error(const Iterate<L> &it);
+    double update_multipliers(const Iterate<L> &it);
+    bool bounded_step(double tolerance, Report &report);
     double optimality(const Iterate<L> &it) const;
     bool line_search(int iteration, Report &report);
     bool acceptable(const Iterate<L> &trial, int iteration) const;
@@ -142,21 +160,30 @@ template <class L> class Solver {
 template <class L> void Solver<L>::evaluate(Iterate<L> &it) {
     const int N = options.horizon;
     it.cost = 0;
-    it.infeasibility = 0;
+    it.gap_sum = 0;
+    it.violation = 0;
+    double outside = 0;
     for (int k = 0; k <= N; ++k) {
         evaluate_node(stages[k], it.x[k], k < N ? it.u[k] : zero(), true, it.node[k]);
         it.cost += it.node[k].cost;
+        if (options.bounds) {
+            const Violation v = bound_violation(bounds[k], k < N ? it.u[k] : zero(), it.node[k].force);
+            outside += v.sum;
+            it.violation = larger(it.violation, v.worst);
+        }
         if (k == N) break;
         for (int b = 0; b < L::blocks; ++b) it.gap[k + 1].block[b] = it.node[k].x_next.block[b] - it.x[k + 1].block[b];
-        it.infeasibility += sum_magnitude(it.gap[k + 1]);
+        it.gap_sum += sum_magnitude(it.gap[k + 1]);
     }
+    it.infeasibility = it.gap_sum + outside;
 }
 
 template <class L> bool Solver<L>::backward(const Iterate<L> &it) {
     const int N = options.horizon;
-    terminal_step(static_cast<const Expansion<L> &>(it.node[N]), regularisation, factors[N]);
+    terminal_step(expansion(it, N), regularisation, factors[N]);
     for (int k = N - 1; k >= 0; --k)
-        if (!backward_step<L>(it.node[k], it.node[k], it.gap[k + 1], factors[k + 1], step, regularisation, factors[k]))
+        if (!backward_step<L>(it.node[k], expansion(it, k), it.gap[k + 1], factors[k + 1], step, regularisation,
+                              factors[k]))
             return false;
     return true;
 }
@@ -172,7 +199,7 @@ template <class L> void Solver<L>::forward(const Iterate<L> &it) {
 }
 
 // Newton step of the current iterate; raises the regularisation while the recursion is not positive definite.
-template <class L> bool Solver<L>::search_direction(Report &report) {
+template <class L> bool Solver<L>::newton_step(Report &report) {
     constexpr double largest_regularisation = 1e3;
     for (;;) {
         ++report.factorisations;
@@ -185,6 +212,67 @@ template <class L> bool Solver<L>::search_direction(Report &report) {
     }
 }
 
+// Torque and force of a stage, linearised at the current direction.
+template <class L>
+void Solver<L>::bounded_values(const Iterate<L> &it, int k, Lanes &torque, double *force) const {
+    const bool running = k < options.horizon;
+    torque = running ? it.u[k] + du[k] : zero();
+    const int rows = bounds[k].cone ? larger(bounds[k].forces, 3) : bounds[k].forces;
+    for (int c = 0; c < rows; ++c) {
+        Row<L> row_x;
+        Lanes row_u;
+        force_row(it.node[k], c, row_x, row_u);
+        force[c] = it.node[k].force[c] + dot(row_x, dx[k]) + (running ? sum(row_u * du[k]) : 0);
+    }
+}
+
+// Brings the terms' local model to the current direction; returns by how much the old one was wrong there [N, N·m].
+template <class L> double Solver<L>::model_error(const Iterate<L> &it) {
+    double worst = 0;
+    for (int k = 0; k <= options.horizon; ++k) {
+        Lanes torque;
+        double force[max_contact];
+        bounded_values(it, k, torque, force);
+        BoundVector predicted;
+        predicted_gradient(bounds[k], terms[k], torque, force, predicted);
+        bound_terms(bounds[k], multipliers[k], torque, force, terms[k]);
+        worst = larger(worst, largest_difference(bounds[k], predicted, terms[k].gradient) / penalty);
+    }
+    return worst;
+}
+
+// y ← gradient of the terms; returns the primal-dual residual ‖z − Π_C(z + y/ρ)‖ that the old y left.
+template <class L> double Solver<L>::update_multipliers(const Iterate<L> &it) {
+    double worst = 0;
+    for (int k = 0; k <= options.horizon; ++k) {
+        worst = larger(worst, largest_difference(bounds[k], multipliers[k], terms[k].gradient) / penalty);
+        multipliers[k] = terms[k].gradient;
+        bound_terms(bounds[k], multipliers[k], terms[k].torque_at, terms[k].force_at, terms[k]);
+    }
+    (void)it;
+    return worst;
+}
+
+// Direction under the bounds, by the method of bounds.hpp.
+template <class L> bool Solver<L>::bounded_step(double tolerance, Report &report) {
+    constexpr int most_factorisations = 20;
+    const Iterate<L> &it = current();
+    const int N = options.horizon;
+    for (int k = 0; k <= N; ++k) {
+        dx[k] = zero_row<L>();
+        if (k < N) du[k] = zero();
+    }
+    model_error(it);
+    for (int i = 0; i < most_factorisations; ++i) {
+        for (int k = 0; k <= N; ++k)
+            bounded_expansion(bounds[k], terms[k], it.node[k], k < N ? it.u[k] : zero(), expansions[k]);
+        if (!newton_step(report)) return false;
+        if (model_error(it) > tolerance) continue;      // the active set moved
+        if (update_multipliers(it) <= tolerance) break; // nothing left to move
+    }
+    return true;
+}
+
 // ∞-norm of the KKT residual with the multipliers of the last direction.
 template <class L> double Solver<L>::optimality(const Iterate<L> &it) const {
     const int N = options.horizon;
@@ -193,6 +281,12 @@ template <class L> double Solver<L>::optimality(const Iterate<L> &it) const {
         Row<L> by_x;
         Lanes by_u;
         times_tangent<L>(costates[k + 1], it.node[k], step, by_x, by_u);
+        if (options.bounds) {
+            add_multipliers(bounds[k], multipliers[k], it.node[k], by_x, by_u);
+            BoundTerms at;
+            bound_terms(bounds[k], multipliers[k], it.u[k], it.node[k].force, at);
+            worst = larger(worst, largest_difference(bounds[k], multipliers[k], at.gradient) / penalty);
+        }
         worst = larger(worst, largest(absolute(by_u + it.node[k].Lu)));
         if (k > 0) {
             for (int b = 0; b < L::blocks; ++b)
@@ -202,6 +296,13 @@ template <class L> double Solver<L>::optimality(const Iterate<L> &it) const {
         worst = larger(worst, largest_magnitude(it.gap[k + 1]));
     }
     Row<L> last = it.node[N].Lx;
+    if (options.bounds) {
+        Lanes none = zero();
+        add_multipliers(bounds[N], multipliers[N], it.node[N], last, none);
+        BoundTerms at;
+        bound_terms(bounds[N], multipliers[N], none, it.node[N].force, at);
+        worst = larger(worst, largest_difference(bounds[N], multipliers[N], at.gradient) / penalty);
+    }
     for (int b = 0; b < L::blocks; ++b) last.block[b] -= costates[N].block[b];
     return larger(worst, largest_magnitude(last));
 }
@@ -243,7 +344,8 @@ template <class L> bool Solver<L>::line_search(int iteration, Report &report) {
 template <class L> Status Solver<L>::iterate(const Limits &limits, double start, Report &report) {
     int failures = 0;
     for (;;) {
-        if (!search_direction(report)) return Status::not_positive_definite;
+        const bool found = options.bounds ? bounded_step(0.1 * limits.tolerance, report) : newton_step(report);
+        if (!found) return Status::not_positive_definite;
         if (report.iterations == 0) report.kkt = optimality(current());
         if (!isfinite(report.kkt)) return Status::nan;
         if (report.kkt <= limits.tolerance) return Status::converged;
@@ -280,7 +382,8 @@ void Solver<L>::solve(const NodeData *nodes, const double *x0, const Limits &lim
         if (isfinite(it.cost) && isfinite(it.infeasibility)) report.status = iterate(limits, start, report);
     }
     report.cost = current().cost;
-    report.gap = current().infeasibility;
+    report.gap = current().gap_sum;
+    report.violation = current().violation;
     report.seconds = now_seconds() - start;
 }
 

@@ -1,0 +1,183 @@
+"""Bounds on torque and force and the friction cone, against independent solvers on the condensed problem."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from pliant import _mpc
+from tests.twins.mpc_robots import catalogue_chain
+
+from .kernel_problem import noisy, polishing
+from .test_kernel_solver import nodes_like
+
+Vector = np.ndarray
+
+
+class Condensed:
+    """The same problem in the controls alone: roll-out, cost, predicted forces, and their gradients."""
+
+    def __init__(self, nodes: list[_mpc.Node], x0: Vector) -> None:
+        self.nodes, self.x0, self.N = nodes, x0, len(nodes) - 1
+
+    def evaluate(self, z: Vector) -> tuple[float, Vector, Vector, Vector]:
+        """Cost, gradient (N n,), forces (N + 1, m), their Jacobian ((N + 1) m, N n)."""
+        us = z.reshape(self.N, -1)
+        n, x = us.shape[1], self.x0
+        sensitivity = np.zeros((len(x), z.size))  # ∂x_k/∂z
+        cost, gradient, forces, rows = 0.0, np.zeros(z.size), [], []
+        for k, node in enumerate(self.nodes):
+            u = us[k] if k < self.N else np.zeros(n)
+            r = node.calc_diff(x, u)
+            own = slice(k * n, (k + 1) * n)
+            cost += r.cost
+            gradient += r.Lx @ sensitivity
+            forces.append(r.force)
+            row = r.force_x @ sensitivity if k < self.N else np.zeros((len(r.force), z.size))
+            if k == self.N and len(x) > 2 * n and len(r.force):
+                row = sensitivity[2 * n :]
+            if k < self.N:
+                gradient[own] += r.Lu
+                row[:, own] += r.force_u
+                sensitivity = r.fx @ sensitivity
+                sensitivity[:, own] += r.fu
+                x = r.x_next
+            rows.append(row)
+        return cost, gradient, np.array(forces), np.vstack(rows)
+
+
+def reference(problem: Condensed, start: Vector, bounds: list[tuple[float, float]], constraints: list[dict]) -> Vector:
+    """SLSQP on the condensed problem, controls scaled so that its tolerance means something."""
+    scale = 1e3  # the cost of a torque is of order 1e-7
+    result = minimize(
+        lambda z: scale * problem.evaluate(z)[0],
+        start,
+        jac=lambda z: scale * problem.evaluate(z)[1],
+        bounds=bounds,
+        constraints=constraints,
+        method="SLSQP",
+        options={"maxiter": 500, "ftol": 1e-14},
+    )
+    return result.x
+
+
+def bounded(kind: str, dim: int) -> tuple[_mpc.Solver, Vector, Vector]:
+    """A solver pushed hard off its rest, so that bounds bite: 60 N wanted, from 15 N."""
+    robot = catalogue_chain("lwr4")
+    solver, x0 = polishing(robot, kind, dim, bounds=True)
+    solver.nodes.force_reference[:, min(dim, 3) - 1] = 60.0
+    free, _ = polishing(robot, kind, dim)
+    free.nodes.force_reference[:, min(dim, 3) - 1] = 60.0
+    unbounded = free.solve(x0, max_iterations=50, tolerance=1e-7)
+    assert unbounded.status == "converged"
+    return solver, x0, unbounded.us
+
+
+@pytest.mark.parametrize(
+    ("kind", "dim"), [("force_feedback", 1), ("force_feedback", 3), ("classical", 1), ("torque_feedback", 1)]
+)
+def test_torque_bounds(kind: str, dim: int) -> None:
+    robot = catalogue_chain("lwr4")
+    solver, x0, unbounded = bounded(kind, dim)
+    rest = solver.us  # of the force that is there; the bounds leave 60 % of the way to what is wanted
+    part = rest + 0.6 * (unbounded - rest)
+    lower, upper = np.minimum(rest, part) - 1e-3, np.maximum(rest, part) + 1e-3
+    assert np.max(np.maximum(unbounded - upper, lower - unbounded)) > 1e-2  # control arm: without the bound it breaks
+    solver.nodes.torque_lower[:-1] = lower
+    solver.nodes.torque_upper[:-1] = upper
+    solution = solver.solve(x0, max_iterations=100, tolerance=1e-7)
+    assert solution.status == "converged"
+    assert np.all(solution.us <= upper + 1e-6)
+    assert np.all(solution.us >= lower - 1e-6)
+    assert solution.violation <= 1e-6
+    problem = Condensed(nodes_like(solver, robot, kind, dim), x0)
+    limits = list(zip(lower.ravel(), upper.ravel(), strict=True))
+    expected = reference(problem, solution.us.ravel(), limits, [])
+    best, got = problem.evaluate(expected)[0], problem.evaluate(solution.us.ravel())[0]
+    assert got <= best + 1e-6 * abs(best)
+
+
+@pytest.mark.parametrize(
+    ("kind", "dim"), [("force_feedback", 1), ("force_feedback", 3), ("classical", 1), ("classical", 3)]
+)
+def test_force_bounds(kind: str, dim: int) -> None:
+    robot = catalogue_chain("lwr4")
+    solver, x0, _ = bounded(kind, dim)
+    normal, highest = min(dim, 3) - 1, 25.0
+    problem = Condensed(nodes_like(solver, robot, kind, dim), x0)
+    free, _ = polishing(robot, kind, dim)
+    free.nodes.force_reference[:, normal] = 60.0
+    assert np.max(free.solve(x0, max_iterations=50).forces[:, normal]) > highest + 1.0  # control arm
+    solver.nodes.force_lower[:, normal] = 0.0
+    solver.nodes.force_upper[:, normal] = highest
+    solution = solver.solve(x0, max_iterations=100, tolerance=1e-7)
+    assert solution.status == "converged"
+    _, _, forces, _ = problem.evaluate(solution.us.ravel())
+    chosen = slice(1, None) if kind == "force_feedback" else slice(0, 5)
+    m = max(dim, 1)
+    assert np.all(forces[chosen, normal] <= highest + 1e-5)
+    assert np.all(forces[chosen, normal] >= -1e-5)
+    rows = np.arange(6)[chosen] * m + normal
+    constraint = {
+        "type": "ineq",
+        "fun": lambda z: highest - problem.evaluate(z)[2].ravel()[rows],
+        "jac": lambda z: -problem.evaluate(z)[3][rows],
+    }
+    expected = reference(problem, solution.us.ravel(), [(None, None)] * 35, [constraint])
+    best, got = problem.evaluate(expected)[0], problem.evaluate(solution.us.ravel())[0]
+    assert got <= best + 1e-5 * abs(best)
+
+
+@pytest.mark.parametrize("kind", ["force_feedback", "classical"])
+def test_friction_cone(kind: str) -> None:
+    robot = catalogue_chain("lwr4")
+    mu = 0.3
+    solver, x0, _ = bounded(kind, 3)
+    solver.nodes.force_reference[:, 0] = 30.0  # a tangential force that the cone forbids
+    free, _ = polishing(robot, kind, 3)
+    free.nodes.force_reference[:] = solver.nodes.force_reference
+    problem = Condensed(nodes_like(solver, robot, kind, 3), x0)
+    chosen = slice(1, None) if kind == "force_feedback" else slice(0, 5)
+
+    def margin(forces: Vector) -> Vector:
+        return mu * forces[chosen, 2] - np.linalg.norm(forces[chosen, :2], axis=1)
+
+    unbounded = free.solve(x0, max_iterations=50)
+    assert np.min(margin(problem.evaluate(unbounded.us.ravel())[2])) < -1.0  # control arm
+    solver.nodes.friction = mu
+    solution = solver.solve(x0, max_iterations=100, tolerance=1e-7)
+    assert solution.status == "converged"
+    assert np.min(margin(problem.evaluate(solution.us.ravel())[2])) >= -1e-5
+    constraint = {"type": "ineq", "fun": lambda z: margin(problem.evaluate(z)[2])}
+    expected = reference(problem, solution.us.ravel(), [(None, None)] * 35, [constraint])
+    best, got = problem.evaluate(expected)[0], problem.evaluate(solution.us.ravel())[0]
+    assert got <= best + 1e-5 * abs(best)
+
+
+def test_bounds_that_do_not_bite_change_nothing() -> None:
+    robot = catalogue_chain("lwr4")
+    for kind, dim in (("force_feedback", 3), ("classical", 3)):
+        plain, x0 = polishing(robot, kind, dim)
+        solver, _ = polishing(robot, kind, dim, bounds=True)
+        solver.nodes.torque_lower = -1e3
+        solver.nodes.torque_upper = 1e3
+        solver.nodes.force_lower = -1e3
+        solver.nodes.force_upper = 1e3
+        solver.nodes.friction = 1e3
+        a, b = plain.solve(x0), solver.solve(x0)
+        np.testing.assert_allclose(b.us, a.us, rtol=1e-12)
+        assert a.iterations == b.iterations
+
+
+def test_bounded_noisy_loop_converges() -> None:
+    robot = catalogue_chain("lwr4")
+    solver, x0, unbounded = bounded("force_feedback", 3)
+    solver.nodes.torque_upper = np.min(unbounded, axis=0) + 0.6 * np.ptp(unbounded, axis=0) + 1e-2
+    solver.nodes.force_lower[:, 2] = 0.0
+    solver.nodes.force_upper[:, 2] = 25.0
+    solver.nodes.friction = 0.5
+    rng = np.random.default_rng(6)
+    solutions = [solver.solve(noisy(x0, robot.model.nv, rng)) for _ in range(500)]
+    assert sum(s.status == "converged" for s in solutions) >= 495
+    assert max(s.violation for s in solutions if s.status == "converged") <= 1e-4
