@@ -19,10 +19,15 @@ import numpy as np
 from pliant.controllers.config import FrameTaskConfig, RotationConfig, StackConfig, TranslationConfig
 from pliant.controllers.registry import advise_stack, build_stack
 from pliant.robot import Robot
-from pliant.signals import Estimate, Reference, TaskReference
+from pliant.signals import Estimate, Measurement, Reference, TaskReference
 from pliant.simulation import JointEffects, MujocoPlant
 
 PERIOD = 1e-3  # s
+
+
+def seen(measurement: Measurement) -> Estimate:
+    """Sensors are perfect here; on a robot an estimator stands in this place."""
+    return Estimate(measurement.time, measurement.q, measurement.v, measurement.torque, measurement.torque_sent)
 
 
 def main(source: str = "lwr4", tool: str = "flange", elbow: str = "elbow") -> None:
@@ -52,22 +57,21 @@ def main(source: str = "lwr4", tool: str = "flange", elbow: str = "elbow") -> No
     centre, rotation = robot.placement(robot.home, tool)
     elbow_position, _ = robot.placement(robot.home, elbow)
     measurement, world = plant.init()
-    state, errors, peak = None, [], 0.0
+    state, errors, commands = controller.init(seen(measurement)), [], []
     for _ in range(5000):
         t = measurement.time
-        estimate = Estimate(t, measurement.q, measurement.v, measurement.torque, measurement.torque_sent)
         circle = 0.03 * np.array([np.cos(2.0 * t) - 1.0, np.sin(2.0 * t), 0.0])  # m
         targets = (TaskReference(tool, centre + circle, rotation), TaskReference(elbow, elbow_position))
-        state = controller.init(estimate) if state is None else state
-        command, state = controller.step(estimate, Reference(t, targets), state)
-        errors.append(np.asarray(command.diagnostics["tool/error"])[:3])
-        peak = max(peak, float(np.abs(command.torque).max()))
+        command, state = controller.step(seen(measurement), Reference(t, targets), state)
         measurement, world = plant.step(command, world)
+        errors.append(np.asarray(command.diagnostics["tool/error"])[:3])
+        commands.append(command)
 
+    peak = max(float(np.abs(command.torque).max()) for command in commands)
     rmse = 1e3 * np.sqrt(np.mean(np.square(errors), axis=0))
     print(f"{robot.name}: tool RMSE x, y, z = {np.round(rmse, 2).tolist()} mm, peak torque {peak:.1f} N·m")
     for name in ("supplied", "delivered", "stored", "dissipated", "clamped"):
-        print(f"  energy {name:>10}: {float(command.diagnostics[f'energy/{name}']):8.4f} J")
+        print(f"  energy {name:>10}: {float(commands[-1].diagnostics[f'energy/{name}']):8.4f} J")
 
 
 if __name__ == "__main__":
