@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from tests.laws.impedance_strategies import run_mass
 
 from pliant.controllers.advice import advise, sentences, smallest_inertia
 from pliant.controllers.presets import STIFF_STACK, TABLE_I_SIMULATION
 from pliant.controllers.profiles import ForceProfile
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
+from tests.laws.impedance_strategies import run_mass
 
 
 def tuning_of(omega_T: float, mass: float, period: float) -> ImpedanceTuning:

@@ -189,5 +189,20 @@ def test_signals_that_are_not_finite(stack: Stack, lwr4: Robot, bad: float) -> N
 def test_a_robot_with_other_joints(stack: Stack, lwr4: Robot) -> None:
     with pytest.raises(ShapeError, match="7 entries for robot 'lwr4', got shape \\(6,\\)"):
         stack.init(estimate(np.zeros(6)))
-    with pytest.raises(ShapeError, match="'lwr4' with 7 joints"):
+    with pytest.raises(ShapeError, match="q must be an array of 7 entries for robot 'lwr4'"):
         stack.step(estimate(np.zeros(6)), reference(lwr4), stack.init(estimate(lwr4.home)))
+
+
+@pytest.mark.parametrize(
+    ("change", "rule"),
+    [
+        ({"position": np.zeros(4)}, "position of frame 'flange' must be an array of 3 entries"),
+        ({"position": [0.1, 0.2, 0.3]}, r"must be an array of 3 entries, got \[0.1, 0.2, 0.3\]"),
+        ({"rotation": np.eye(4)}, r"rotation of frame 'flange' must be an array of shape \(3, 3\)"),
+    ],
+)
+def test_a_reference_of_another_shape(stack: Stack, lwr4: Robot, change: dict[str, object], rule: str) -> None:
+    now, there = estimate(lwr4.home), reference(lwr4)
+    bent = replace(there, tasks=(replace(there.tasks[0], **change), there.tasks[1]))
+    with pytest.raises(ShapeError, match=rule):
+        stack.step(now, bent, stack.init(now))

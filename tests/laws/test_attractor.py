@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.laws.impedance_strategies import profile_of, profiles, run_mass
 
 from pliant.controllers.attractor import Law, PhaseSettings, converging_force
 from pliant.controllers.profiles import ForceProfile, Shape
+from tests.laws.impedance_strategies import profile_of, profiles, run_mass
 
 SATURATING = profile_of(2500.0, 100.0, 0.06, 0.03)
 STIFFENING = profile_of(1000.0, 150.0, 0.025, shape=Shape.TANH)

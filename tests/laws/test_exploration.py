@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.laws.one_axis import Log, World, run, tuning
 
 from pliant.references.exploration_axis import AxisPhase
 from pliant.references.exploration_config import ExplorationConfig
+from tests.laws.one_axis import Log, World, run, tuning
 
 PAPER = ExplorationConfig(mode="paper", reset=False)
 FLOOR = {"stiffness": 1e6, "damping": 1e4}  # N/m, N s/m

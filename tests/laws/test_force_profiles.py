@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.laws.impedance_strategies import profile_of, profiles
 
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.errors import ConfigError
 from pliant.signals import ImpedanceTuning
+from tests.laws.impedance_strategies import profile_of, profiles
 
 
 def grid(profile: ForceProfile, points: int = 4001) -> np.ndarray:

@@ -142,7 +142,7 @@ class Stack(Controller[StackState]):
             bias = pin.computeGeneralizedGravity(model, work.data, estimate.q) if self.gravity_compensation else None
             code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune)
         except (ValueError, TypeError, RuntimeError) as error:
-            raise ShapeError(f"the stack of {self.robot.name!r} with {self.robot.n} joints got {error}") from error
+            raise ShapeError(self._misshapen(estimate, desired, error)) from error
         if code:
             raise SignalError(self._not_finite(code, estimate))
         n = self.robot.n
@@ -176,6 +176,17 @@ class Stack(Controller[StackState]):
                 )
             changes.append((i, np.concatenate([new.stiffness, new.force_max, new.range, linear_range(new)])))
         return tuple(changes)
+
+    def _misshapen(self, estimate: Estimate, desired: Sequence[Any], error: Exception) -> str:
+        if np.shape(estimate.q) != (self.robot.n,):
+            return f"q must be an array of {self.robot.n} entries for robot {self.robot.name!r}, got {estimate.q!r}"
+        for i, task in enumerate(self.tasks):
+            position, rotation = desired[2 * i], desired[2 * i + 1]
+            if not isinstance(position, np.ndarray) or position.shape != (3,):
+                return f"the position of frame {task.frame!r} must be an array of 3 entries, got {position!r}"
+            if rotation is not None and (not isinstance(rotation, np.ndarray) or rotation.shape != (3, 3)):
+                return f"the rotation of frame {task.frame!r} must be an array of shape (3, 3), got {rotation!r}"
+        return f"the stack of robot {self.robot.name!r} cannot use its input: {error}"
 
     def _not_finite(self, code: int, estimate: Estimate) -> str:
         if code < 200:
