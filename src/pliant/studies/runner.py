@@ -69,6 +69,7 @@ def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> R
         robot=config.robot,
         seed=config.seed,
         joints=experiment.robot.joint_names,
+        torque_limits=tuple(experiment.robot.torque_limit),
         config=config.model_dump(mode="json"),
     )
 

@@ -1,0 +1,187 @@
+"""The command line as a user calls it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from pliant.telemetry import Log
+
+PLIANT = [sys.executable, "-c", "from pliant.cli import main; main()"]
+SHORT = ["--set", "duration=3.4", "--set", "path.ramp=1.0"]
+
+
+def pliant(*arguments: str, cwd: Path, timeout: float = 300.0) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"COLUMNS": "160", "OMP_NUM_THREADS": "1"}
+    environment.pop("DISPLAY", None)
+    return subprocess.run(
+        [*PLIANT, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, timeout=timeout, check=False
+    )
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
+    """One short run of the default case, in an empty folder."""
+    folder = tmp_path_factory.mktemp("run")
+    return pliant("run", *SHORT, cwd=folder), folder / "pliant-out" / "stack" / "figure8-wall"
+
+
+@pytest.mark.study
+def test_run_prints_a_table_and_leaves_log_figures_and_summary(
+    finished: tuple[subprocess.CompletedProcess[str], Path],
+) -> None:
+    result, out = finished
+    assert result.returncode == 0, result.stderr
+    assert "RMSE x" in result.stdout
+    assert "13.2" in result.stdout  # the paper's number stands beside ours
+    summary = json.loads((out / "summary.json").read_text())
+    assert (summary["study"], summary["seed"]) == ("stack", 0)
+    case = summary["cases"][0]
+    assert (case["case"], case["controller"]) == ("figure8-wall", "stack")
+    assert case["metrics"]["RMSE x"]["unit"] == "mm"
+    assert case["metrics"]["RMSE x"]["paper"] == 13.2
+    figures = sorted(path.name for path in out.glob("*.png"))
+    assert [name.rsplit("_", 1)[1] for name in figures if "scene" not in name] == [
+        "energy.png",
+        "path.png",
+        "posture.png",
+        "torque.png",
+    ]
+    assert all((out / name).stat().st_size > 10_000 for name in figures)
+
+
+@pytest.mark.study
+def test_the_log_of_a_run_can_be_described_and_drawn(
+    finished: tuple[subprocess.CompletedProcess[str], Path], tmp_path: Path
+) -> None:
+    (log,) = finished[1].glob("*.mcap")
+    result = pliant("log", str(log), "--plot", "--out", str(tmp_path), cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "truth/flange/position" in result.stdout
+    assert list(tmp_path.glob("*.png"))
+
+
+@pytest.mark.study
+def test_the_same_seed_gives_the_same_log_bit_for_bit(tmp_path: Path) -> None:
+    short = ["--case", "figure8-pushed", "--set", "duration=2.0", "--set", "path.ramp=0.5"]
+    logs: list[bytes] = []
+    for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
+        result = pliant("run", *short, "--seed", seed, "--out", name, cwd=tmp_path)
+        assert result.returncode == 0, result.stderr
+        (log,) = (tmp_path / name).glob("*.mcap")
+        logs.append(log.read_bytes())
+    assert logs[0] == logs[1]
+    assert logs[0] != logs[2]
+
+
+@pytest.mark.study
+def test_a_configuration_file_and_overrides_reach_the_run(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(
+        'study = "stack"\ncase = "figure8-hardware"\nduration = 2.5\npreset = "table-1-robot"\n[path]\nramp = 0.5\n'
+    )
+    result = pliant("run", "mine.toml", "--set", "path.period=3.0", "--out", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    (log,) = (tmp_path / "out").glob("*.mcap")
+    config = Log.open(log).info.config
+    assert config["preset"] == "table-1-robot"
+    assert config["path"]["ramp"] == 0.5
+    assert config["path"]["period"] == 3.0
+    assert config["joints"]["friction"] == 0.5  # the case's own value stays
+
+
+@pytest.mark.study
+def test_ctrl_c_keeps_what_was_recorded(tmp_path: Path) -> None:
+    command = [*PLIANT, "run", "--set", "duration=600", "--set", "path.kind=hold", "--out", "out"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 120.0
+    while time.monotonic() < deadline:
+        logs = list((tmp_path / "out").glob("*.mcap"))
+        if logs and logs[0].stat().st_size > 1_000_000:
+            break
+        time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in errors
+    assert "interrupted" in errors
+    (path,) = (tmp_path / "out").glob("*.mcap")
+    log = Log.open(path)
+    assert not log.truncated
+    assert log.failure == "interrupted"
+    assert log.duration > 0.5
+
+
+BAD_INPUT = [
+    (["run", "stakc"], "no study named 'stakc'"),
+    (["run", "--case", "figure9"], "no case 'figure9'"),
+    (["run", "--controller", "pid"], "there is no controller 'pid'"),
+    (["run", "--robot", "missing.urdf"], "missing.urdf does not exist"),
+    (["run", "--robot", "broken.urdf"], "is not XML"),
+    (["run", "--robot", "leg3"], "has no frame"),
+    (["run", "--set", "duration"], "key=value"),
+    (["run", "--set", "duration=-1"], "greater than 0"),
+    (["run", "--set", "duration=nan"], "finite number"),
+    (["run", "--set", "lenght=2"], "unknown key 'lenght'"),
+    (["run", "--set", "period=0.0007"], "whole multiple"),
+    (["run", "--set", "control.tasks.ee.translation.range=0.001"], "range x_b must exceed linear_range x_0"),
+    (["run", "--set", "control.tasks.ee.translation.force_max=1"], "force_max must be at least"),
+    (["run", "--set", "control.tasks.ee.frame=nose"], "has no frame 'nose'"),
+    (["run", "--out", "broken.urdf/x"], "output folder"),
+    (["run", "missing.toml"], "missing.toml does not exist"),
+    (["run", "twice.toml"], "is not TOML"),
+    (["run", "nostudy.toml"], "needs a key 'study'"),
+    (["run", "unknown.toml"], "unknown key 'speed'"),
+    (["study", "nothing"], "no study named 'nothing'"),
+    (["log", "missing.mcap"], "missing.mcap cannot be read"),
+    (["log", "broken.urdf"], "broken.urdf"),
+    (["bench", "nothing"], "no benchmark 'nothing'"),
+    (["list", "nothing"], "no list of 'nothing'"),
+    (["fly"], "No such command"),
+    (["run", "--seed", "one"], "--seed"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "words"), BAD_INPUT, ids=[" ".join(a) for a, _ in BAD_INPUT])
+def test_bad_input_gets_one_sentence_and_exit_code_2(
+    arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "broken.urdf").write_text("<robot")
+    (tmp_path / "twice.toml").write_text('study = "stack"\nduration = 1\nduration = 2\n')
+    (tmp_path / "nostudy.toml").write_text("duration = 1\n")
+    (tmp_path / "unknown.toml").write_text('study = "stack"\nspeed = 1\n')
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["pliant", *arguments])
+    from pliant.cli import main
+
+    with pytest.raises(SystemExit) as ended:
+        main()
+    captured = capsys.readouterr()
+    assert ended.value.code == 2
+    assert words in captured.err
+    assert "Traceback" not in captured.err
+
+
+def test_doctor_and_list_say_what_there_is(tmp_path: Path) -> None:
+    doctor = pliant("doctor", cwd=tmp_path)
+    assert doctor.returncode == 0, doctor.stderr
+    assert "mujoco" in doctor.stdout
+    listed = pliant("list", cwd=tmp_path)
+    for name in ("lwr4", "iiwa14", "leg3", "operational-space", "figure8-wall"):
+        assert name in listed.stdout
+
+
+def test_doctor_warns_of_an_unsafe_configuration(tmp_path: Path) -> None:
+    (tmp_path / "stiff.toml").write_text(
+        'study = "stack"\ncase = "figure8-hardware"\n[control.tasks.ee.translation]\nstiffness = 60000\nforce_max = 4000\n'
+    )
+    result = pliant("doctor", "--config", "stiff.toml", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "oscillates" in result.stdout
+    assert "safe: stiffness" in result.stdout
