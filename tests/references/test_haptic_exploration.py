@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -250,3 +251,11 @@ def test_tunings_of_the_exploration_are_passed_on() -> None:
     assert out.tasks[0].tuning is source.tunings["foot"]
     with pytest.raises(ConfigError):
         play(HapticExploration(Mailbox(reference(bare))), 1, foot=np.zeros(6))
+
+
+def test_documentation_names_every_parameter_and_channel() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "haptic_exploration.md").read_text()
+    for name in ExplorationConfig.model_fields:
+        assert name in page or name.endswith("_rotation"), name
+    for channel in CHANNELS:
+        assert f"`{channel}`" in page, channel

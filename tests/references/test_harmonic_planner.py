@@ -13,11 +13,13 @@ from pliant.references.harmonic_attractor import AttractorSettings
 from pliant.references.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.schedule import Mailbox, Schedule
 from pliant.references.superposition import MotionLimits
+from pliant.references.workspace import Workspace, workspace_of
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import exp3, log3
 
 H = 1e-3
+FAST = PlannerLimits(MotionLimits(2.0, 20.0))
 
 
 def estimate(robot: Robot, time: float) -> Estimate:
@@ -107,3 +109,26 @@ def test_attractor_planner_goes_to_a_single_target(lwr4: Robot) -> None:
     np.testing.assert_allclose(rows[-1].position, target, atol=2e-3)
     printed = AttractorPlanner(Mailbox(goal(*target)), lwr4.placement, AttractorSettings(printed=True))
     assert np.linalg.norm(play(lwr4, printed, 3.0)[-1].position - target) > 0.02  # control arm
+
+
+def test_target_outside_the_workspace_is_brought_back_and_reported(lwr4: Robot) -> None:
+    workspace = workspace_of(lwr4, "flange")
+    planner = HarmonicPlanner(Mailbox(goal(3.0, 0.0, 0.31)), lwr4.placement, FAST, {"flange": workspace})
+    state = planner.init(estimate(lwr4, 0.0))
+    for tick in range(8000):
+        reference, state = planner.step(estimate(lwr4, tick * H), state)
+    reached = reference.tasks[0].position
+    assert np.linalg.norm(reached - workspace.centre) == pytest.approx(workspace.radius)
+    np.testing.assert_allclose(reference.diagnostics["planner/flange/clamped"], (3.0, 0.0, 0.31) - reached)
+
+
+def test_workspace_holds_every_reachable_position(lwr4: Robot) -> None:
+    workspace = workspace_of(lwr4, "flange")
+    random = np.random.default_rng(0)
+    angles = random.uniform(lwr4.position_lower, lwr4.position_upper, (300, lwr4.n))
+    farthest = max(np.linalg.norm(lwr4.placement(q, "flange")[0] - workspace.centre) for q in angles)
+    assert 0.7 * workspace.radius < farthest <= workspace.radius
+    stretched = lwr4.placement(np.zeros(lwr4.n), "flange")[0]
+    assert np.linalg.norm(stretched - workspace.centre) == pytest.approx(workspace.radius)
+    with pytest.raises(ConfigError, match="radius"):
+        Workspace(np.zeros(3), 0.0)

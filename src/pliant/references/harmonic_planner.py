@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,7 @@ from pliant.errors import SignalError
 from pliant.interfaces import ReferenceSource
 from pliant.references.superposition import MotionLimits, Plan
 from pliant.references.trajectory import vector
+from pliant.references.workspace import Workspace
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import Array, exp3, log3, skew
 
@@ -37,13 +38,15 @@ class PlannerLimits:
 class PlannedFrame:
     """Plans of one frame. Changed in place by the planner that owns it."""
 
-    __slots__ = ("base", "linear", "position", "resting", "rotation", "taken", "turn")
+    __slots__ = ("base", "clamped", "linear", "position", "resting", "rotation", "taken", "turn")
 
     def __init__(self, position: Array, rotation: Array) -> None:
         self.linear = Plan(_floats(position))
         self.turn = Plan((0.0, 0.0, 0.0))
         """rotation vector of R·baseᵀ, rad"""
         self.base = rotation
+        self.clamped: Array = np.zeros(3)
+        """what the workspace took from the last target, m"""
         self.position: Array | None = None
         """last target"""
         self.rotation: Array | None = None
@@ -75,10 +78,19 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         inner: targets; the velocities that it gives are ignored.
         place: forward kinematics, `robot.placement`; called once per frame, when it first appears.
         limits: of speed and acceleration.
+        workspaces: frame → where its targets may lie. One beyond is brought back to the surface; by how much is in the
+            channel `planner/FRAME/clamped` (3,) m of `Reference.diagnostics`.
     """
 
-    def __init__(self, inner: ReferenceSource[Any], place: Place, limits: PlannerLimits | None = None) -> None:
+    def __init__(
+        self,
+        inner: ReferenceSource[Any],
+        place: Place,
+        limits: PlannerLimits | None = None,
+        workspaces: Mapping[str, Workspace] | None = None,
+    ) -> None:
         self.inner, self.limits, self._place = inner, limits or PlannerLimits(), place
+        self.workspaces = dict(workspaces or {})
 
     def init(self, estimate: Estimate) -> PlannerState:
         return PlannerState(self.inner.init(estimate), np.array(estimate.q))
@@ -87,7 +99,11 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         """The inner reference with planned poses and twists. Raises SignalError for a target that is not finite."""
         goal, state.inner = self.inner.step(estimate, state.inner)
         tasks = tuple([self._planned(task, estimate, state) for task in goal.tasks])
-        return Reference(goal.time, tasks, goal.posture, goal.phase, goal.preview, goal.tuning, goal.diagnostics), state
+        diagnostics = goal.diagnostics
+        if self.workspaces:
+            clamped = {f"planner/{name}/clamped": frame.clamped for name, frame in state.frames.items()}
+            diagnostics = {**diagnostics, **clamped}
+        return Reference(goal.time, tasks, goal.posture, goal.phase, goal.preview, goal.tuning, diagnostics), state
 
     def _planned(self, task: TaskReference, estimate: Estimate, state: PlannerState) -> TaskReference:
         frame, time = state.frames.get(task.frame), estimate.time
@@ -113,7 +129,10 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         """Takes a new target; position and orientation arrive together where they start together."""
         if not np.isfinite(task.position).all() or (task.rotation is not None and not np.isfinite(task.rotation).all()):
             raise SignalError(f"the target of frame {task.frame!r} is not finite: {task.position.tolist()}")
-        target = _floats(task.position)
+        workspace = self.workspaces.get(task.frame)
+        allowed = task.position if workspace is None else workspace.nearest(task.position)
+        frame.clamped = task.position - allowed
+        target = _floats(allowed)
         turn = frame.turn.target
         if task.rotation is not None:
             if not frame.turn.folded(time).pieces:
