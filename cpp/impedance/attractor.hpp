@@ -33,15 +33,13 @@ struct AxisState {
   double blend;  // share of it that is still missing, 1..0
 };
 
-inline double clip_noise(double noise, double floor) { return 9.0 * noise + floor; }
-
 // Rate and noise from differences of the error. The third difference of a smooth motion is negligible, that of white noise
 // has 20 times its variance; outliers (a step of the reference, an impact) are clipped to three standard deviations.
 inline void update_rate(const AttractorConfig& c, AxisState& s, double error, double rate_floor) {
   const double third = error - 3.0 * s.error + 3.0 * s.error_2 - s.error_3;
   const double deviation = rate_floor / (3.0 * c.noise_to_rate);
   const double floor = deviation * deviation;
-  const double sample = std::min(third * third / 20.0, clip_noise(s.noise, floor));
+  const double sample = std::min(third * third / 20.0, 9.0 * s.noise + floor);
   s.noise += c.noise_gain * (sample - s.noise);
   s.rate += c.rate_gain * ((error - s.error) / c.period - s.rate);
 }

@@ -3,9 +3,6 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
-#include <cstdio>
-#include <limits>
-#include <stdexcept>
 #include <string>
 
 #include "stack.hpp"
@@ -32,8 +29,6 @@ bool finite(const double* x, int size) {
   for (int i = 0; i < size; ++i) sum += x[i] * 0.0;  // 0 unless an entry is infinite or not a number
   return sum == 0.0;
 }
-
-int task_code(int base, int task) { return base + task; }
 
 void read_pose(nb::handle position, nb::handle rotation, bool needs_rotation, Pose& pose) {
   const auto p = nb::cast<ConstVector>(position);
@@ -63,8 +58,8 @@ int read_tasks(Stack& stack, nb::tuple actual, nb::tuple desired) {
     const bool six = stack.axes(i) == 6;
     read_pose(actual[2 * i], actual[2 * i + 1], six, in.actual);
     read_pose(desired[2 * i], desired[2 * i + 1], six, in.desired);
-    if (!finite(in.actual)) return task_code(100, i);
-    if (!finite(in.desired)) return task_code(200, i);
+    if (!finite(in.actual)) return 100 + i;
+    if (!finite(in.desired)) return 200 + i;
   }
   return 0;
 }
