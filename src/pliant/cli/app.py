@@ -95,13 +95,16 @@ def study(
         int | None, typer.Option(min=1, help="Seeds per case with random draws (default: the study's own).")
     ] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
+    logs: Annotated[
+        bool, typer.Option("--logs", help="Keep the log of every run, not only of those that are drawn.")
+    ] = False,
     out: Out = None,
     set_: Sets = None,
 ) -> None:
     """Runs a whole study, control arms included: the tables and figures of a paper, beside the paper's numbers."""
     from pliant.cli.study import study_command
 
-    study_command(_out, _err, name, case or [], seeds, jobs, set_ or [], out)
+    study_command(_out, _err, name, case or [], seeds, jobs, logs, set_ or [], out)
 
 
 @app.command()

@@ -26,6 +26,7 @@ def study_command(
     cases: Sequence[str],
     seeds: int | None,
     jobs: int,
+    logs: bool,
     assignments: Sequence[str],
     out: Path | None,
 ) -> None:
@@ -44,7 +45,7 @@ def study_command(
     results: list[Result] = []
     try:
         with count_bar(complain, f"study {name}", len(runs)) as done:
-            for result in sweep(name, runs, folder, jobs=jobs):
+            for result in sweep(name, runs, folder, jobs=jobs, logs=logs):
                 results.append(result)
                 done()
     finally:

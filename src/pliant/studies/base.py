@@ -89,6 +89,10 @@ class Study(ABC, Generic[C]):
         """
         return [self.case(case)]
 
+    def shows(self, config: C) -> bool:
+        """Whether a run of the full study keeps its log and is drawn; the others leave their metrics only."""
+        return config.seed == 0 and not config.variant
+
     @abstractmethod
     def build(self, config: C) -> Experiment:
         """Wires the loop of a case."""

@@ -165,20 +165,16 @@ class StackConfig(CaseConfig):
         return self
 
 
-_GAZEBO: dict[str, Any] = {
-    "joints": Joints(friction=10.0, damping=1.0, compensation="gravity", velocity_filter=0.2),
-    # 10 N·m of dry friction in every joint want more than the plain plant does
-    "control": {"tasks": {"ee": {"translation": {"stiffness": 20000.0, "force_max": 200.0}}}},
-}
+_GAZEBO = Joints(friction=10.0, damping=1.0, compensation="gravity", velocity_filter=0.2)
 _HARDWARE = Joints(friction=0.5, damping=0.5, compensation="gravity+coriolis")
 _HARDWARE_LOOP: dict[str, Any] = {"period": 3e-3, "joints": _HARDWARE, "preset": "soft"}
 
 CASES: Mapping[str, StackConfig] = {
     config.case: config
     for config in (
-        StackConfig(case="figure8-wall", wall=Wall(), **_GAZEBO),
+        StackConfig(case="figure8-wall", wall=Wall(), joints=_GAZEBO),
         StackConfig(case="figure8-plain"),
-        StackConfig(case="figure8-gazebo", **_GAZEBO),
+        StackConfig(case="figure8-gazebo", joints=_GAZEBO),
         StackConfig(case="figure8-hardware", **_HARDWARE_LOOP),
         StackConfig(case="figure8-pushed", **_HARDWARE_LOOP, pushes=Pushes()),
         StackConfig(case="line-hardware", path=Path(kind="line"), **_HARDWARE_LOOP),
@@ -188,8 +184,8 @@ CASES: Mapping[str, StackConfig] = {
             case="rest-plain", path=Path(kind="hold"), pushes=Pushes(frame="flange", gap=(0.5, 0.6)), duration=10.0
         ),
         StackConfig(case="singular", path=Path(kind="stretch"), **_HARDWARE_LOOP),
-        StackConfig(case="calibration", retuning=Retuning(), **_GAZEBO),
-        StackConfig(case="balance", **_GAZEBO),
+        StackConfig(case="calibration", retuning=Retuning(), joints=_GAZEBO),
+        StackConfig(case="balance", joints=_GAZEBO),
     )
 }
 """name → configuration; the first is what `pliant run` does"""

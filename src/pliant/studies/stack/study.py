@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pliant.controllers.registry import CONTROLLERS
+from pliant.robot import Robot
 from pliant.studies.base import Experiment, Result, Study
 from pliant.studies.config import merged
 from pliant.studies.stack import draw
@@ -45,9 +46,10 @@ class StackStudy(Study[StackConfig]):
         runs.append(merged(config, {**printed, "controller": "stack-paper"}))
         return runs
 
-    def metrics(self, config: StackConfig, log: Log) -> tuple[Metric, ...]:
-        from pliant.robot import Robot
+    def shows(self, config: StackConfig) -> bool:
+        return super().shows(config) and config.controller == "stack"
 
+    def metrics(self, config: StackConfig, log: Log) -> tuple[Metric, ...]:
         return measure(config, Robot.load(config.robot), log)
 
     def figures(self, config: StackConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
