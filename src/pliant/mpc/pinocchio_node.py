@@ -129,19 +129,22 @@ class PinocchioNode:
             torque_x[:, 2 * nv :], torque_u = self._select, np.zeros((nv, self.nu))
         drive = self._select @ torque
         if self.problem.m == 0 or not self.parameters.contact_active[0]:
-            return self._without_contact(q, v, drive, torque_x, torque_u)
+            return self._without_contact(q, v, e, drive, torque_x, torque_u)
         if kind in ("classical", "torque_feedback"):
             return self._rigid(q, v, drive, torque_x, torque_u)
         return self._soft(q, v, e, drive, torque_x, torque_u)
 
-    def _without_contact(self, q: Array, v: Array, drive: Array, torque_x: Array, torque_u: Array) -> _Dynamics:
+    def _without_contact(
+        self, q: Array, v: Array, e: Array, drive: Array, torque_x: Array, torque_u: Array
+    ) -> _Dynamics:
         m = self.problem.m
         M_inverse, bias = self._inertia(q, v)
         a = M_inverse @ (drive - bias)
         self._kinematics(q, v, a)
         a_x = M_inverse @ (torque_x - self._inverse_dynamics_x(q, v, a, np.zeros(6)))
         none_x, none_u, none = np.zeros((m, self.ndx)), np.zeros((m, self.nu)), np.zeros(m)
-        return _Dynamics(a, a_x, M_inverse @ torque_u, none, none_x, none_u, none, none_x, none_u)
+        force = e if self.problem.config.kind == "force_feedback" else none  # a state that acts on nothing
+        return _Dynamics(a, a_x, M_inverse @ torque_u, force, none_x, none_u, none, none_x, none_u)
 
     def _rigid(self, q: Array, v: Array, drive: Array, torque_x: Array, torque_u: Array) -> _Dynamics:
         """[FFMPC] eq. 4: M v̇ − Jᵀλ = τ − h, J v̇ + J̇ v + kd J v + kp e = 0, and the same system for the derivatives."""
