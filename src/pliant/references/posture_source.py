@@ -60,8 +60,10 @@ class _Task:
     frame: str
     rotation: Array | None
     tuning: ImpedanceTuning | None
-    first: int
-    """first of its six columns in the spline"""
+    place: slice
+    """columns of its position in the spline"""
+    twist: slice
+    """its six columns: position and zeros, or their rates"""
 
 
 class PostureSource(ReferenceSource[Started]):
@@ -90,9 +92,12 @@ class PostureSource(ReferenceSource[Started]):
         R = motion.rotation
         self._turning = R if isinstance(R, Turning) and not isinstance(R, Fixed) else None
         fixed = R.at(0.0).rotation if isinstance(R, Fixed) else None
-        self._tool = _Task(motion.frame, fixed, motion.tuning, 0)
-        self._others = [_Task(frame, None, tunings.get(frame), 6 * i) for i, frame in enumerate(secondary, start=1)]
-        self._posture = 6 * len(blocks)
+        self._tool = _Task(motion.frame, fixed, motion.tuning, slice(0, 3), slice(0, 6))
+        self._others = [
+            _Task(frame, None, tunings.get(frame), slice(6 * i, 6 * i + 3), slice(6 * i, 6 * i + 6))
+            for i, frame in enumerate(secondary, start=1)
+        ]
+        self._posture = slice(6 * len(blocks), None)
         self._no_wrench = vector(np.zeros(6), "no wrench")
 
     def init(self, estimate: Estimate) -> Started:
@@ -106,23 +111,30 @@ class PostureSource(ReferenceSource[Started]):
         value, rate, acceleration = self._spline.at(elapsed)
         tasks = [self._tool_task(elapsed, value, rate, acceleration)]
         for task in self._others:
-            i, j = task.first, task.first + 6
             tasks.append(
                 TaskReference(
-                    task.frame, value[i : i + 3], None, rate[i:j], acceleration[i:j], self._no_wrench, task.tuning
+                    task.frame,
+                    value[task.place],
+                    None,
+                    rate[task.twist],
+                    acceleration[task.twist],
+                    self._no_wrench,
+                    task.tuning,
                 )
             )
-        return Reference(time, tuple(tasks), value[self._posture :])
+        return Reference(time, tuple(tasks), value[self._posture])
 
     def _tool_task(self, elapsed: float, value: Array, rate: Array, acceleration: Array) -> TaskReference:
-        rotation, velocity, change = self._tool.rotation, rate[:6], acceleration[:6]
+        rotation, velocity, change = self._tool.rotation, rate[self._tool.twist], acceleration[self._tool.twist]
         if self._turning is not None and elapsed <= self.path.times[-1]:
             velocity, change = velocity.copy(), change.copy()
             rotation, velocity[3:], change[3:] = self._turning.at(elapsed)
         elif self._turning is not None:
             rotation = self._turning.at(float(self.path.times[-1])).rotation
         wrench = self._no_wrench if self.motion.wrench is None else self.motion.wrench.at(elapsed).value
-        return TaskReference(self._tool.frame, value[:3], rotation, velocity, change, wrench, self._tool.tuning)
+        return TaskReference(
+            self._tool.frame, value[self._tool.place], rotation, velocity, change, wrench, self._tool.tuning
+        )
 
 
 def _frame_path(robot: Robot, path: PosturePath, frame: str) -> Array:

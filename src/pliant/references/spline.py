@@ -26,29 +26,31 @@ class Spline(Trajectory):
         chord = np.diff(values, axis=0) / h
         c_2 = (3.0 * chord - 2.0 * slopes[:-1] - slopes[1:]) / h
         c_3 = (slopes[:-1] + slopes[1:] - 2.0 * chord) / h**2
-        self._coefficients = _with_derivatives(values[:-1], slopes[:-1], c_2, c_3)
+        self._pieces = list(_with_derivatives(values[:-1], slopes[:-1], c_2, c_3))
+        self._last_piece = len(self._pieces) - 1
         self._times: list[float] = times.tolist()
         steps = np.diff(times)
         self._step = float(steps[0]) if np.allclose(steps, steps[0], rtol=1e-9, atol=0.0) else 0.0
         self.size, self.duration = int(values.shape[1]), float(times[-1])
-        zero = np.zeros(self.size)
+        k = self.size
+        self._value, self._rate, self._acceleration = slice(0, k), slice(k, 2 * k), slice(2 * k, 3 * k)
+        zero = np.zeros(k)
         self._first = Point(values[0].copy(), zero, zero)
         self._last = Point(values[-1].copy(), zero, zero)
 
     def at(self, time: float) -> Point:
-        if time > self._times[-1]:
+        times = self._times
+        if time > times[-1]:
             return self._last
-        if time < self._times[0]:
+        if time < times[0]:
             return self._first
-        index = self._index(time)
-        t, k = time - self._times[index], self.size
-        row = np.array((1.0, t, t * t, t * t * t)).dot(self._coefficients[index])  # (4,) @ (4, 3k)
-        return Point(row[:k], row[k : 2 * k], row[2 * k :])
-
-    def _index(self, time: float) -> int:
         if self._step > 0.0:
-            return min(int((time - self._times[0]) / self._step), len(self._times) - 2)
-        return min(bisect.bisect_right(self._times, time) - 1, len(self._times) - 2)
+            index = min(int((time - times[0]) / self._step), self._last_piece)
+        else:
+            index = min(bisect.bisect_right(times, time) - 1, self._last_piece)
+        t = time - times[index]
+        row = np.array((1.0, t, t * t, t * t * t)).dot(self._pieces[index])  # (4,) @ (4, 3k)
+        return Point(row[self._value], row[self._rate], row[self._acceleration])
 
 
 def _with_derivatives(c_0: Array, c_1: Array, c_2: Array, c_3: Array) -> Array:
