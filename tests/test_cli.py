@@ -150,7 +150,11 @@ BAD_INPUT = [
 
 @pytest.mark.parametrize(("arguments", "words"), BAD_INPUT, ids=[" ".join(a) for a, _ in BAD_INPUT])
 def test_bad_input_gets_one_sentence_and_exit_code_2(
-    arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: list[str],
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     (tmp_path / "broken.urdf").write_text("<robot")
     (tmp_path / "twice.toml").write_text('study = "stack"\nduration = 1\nduration = 2\n')
@@ -179,7 +183,8 @@ def test_doctor_and_list_say_what_there_is(tmp_path: Path) -> None:
 
 def test_doctor_warns_of_an_unsafe_configuration(tmp_path: Path) -> None:
     (tmp_path / "stiff.toml").write_text(
-        'study = "stack"\ncase = "figure8-hardware"\n[control.tasks.ee.translation]\nstiffness = 60000\nforce_max = 4000\n'
+        'study = "stack"\ncase = "figure8-hardware"\n'
+        "[control.tasks.ee.translation]\nstiffness = 60000\nforce_max = 4000\n"
     )
     result = pliant("doctor", "--config", "stiff.toml", cwd=tmp_path)
     assert result.returncode == 0, result.stderr

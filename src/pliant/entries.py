@@ -10,21 +10,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from pydantic import BaseModel, ConfigDict
-
+from pliant.configuration import Config
 from pliant.errors import ConfigError, options
 from pliant.interfaces import Controller
 from pliant.robot import Robot
 
 
-class ControllerConfig(BaseModel):
-    """Base of a controller's configuration: frozen, unknown keys are errors, every number is finite.
-
-    Every field says what it means in `description` and its unit in `json_schema_extra={"unit": ...}`; help texts and
-    sliders are made from them.
-    """
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+class ControllerConfig(Config):
+    """Base of a controller's configuration."""
 
 
 C = TypeVar("C", bound=ControllerConfig)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from pliant.configuration import Config
 
 
 def _in(unit: str) -> dict[str, Any]:
     return {"unit": unit}
 
 
-class ExplorationConfig(BaseModel):
+class ExplorationConfig(Config):
     """How a target moves so that the contact force becomes the desired one."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
 
     mode: Literal["adaptive", "paper"] = Field(
         default="adaptive",

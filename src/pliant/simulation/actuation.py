@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.simulation.link_config import LinkConfig, PerJoint, Range, quantity
+from pliant.configuration import Config
+from pliant.simulation.link_config import PerJoint, Range, quantity
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array, as_vector
 
 
-class ActuationConfig(LinkConfig):
+class ActuationConfig(Config):
     """From motor torque to torque at the link side of the joint."""
 
     gain: Range = quantity((1.0, 1.0), "1", "a is drawn uniformly from this range, per joint and run")

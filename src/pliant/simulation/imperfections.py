@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from pliant.configuration import Config
 from pliant.simulation.actuation import ActuationConfig
-from pliant.simulation.link_config import LinkConfig, quantity
+from pliant.simulation.link_config import quantity
 from pliant.simulation.low_level import TorqueLoopConfig
 from pliant.simulation.ripple import RippleConfig
 from pliant.simulation.sensing import SensingConfig
 
 
-class Imperfections(LinkConfig):
+class Imperfections(Config):
     """Everything between a controller and the rigid-body physics. The defaults are a perfect robot."""
 
     computation_delay: float = quantity(

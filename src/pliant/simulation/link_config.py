@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, Field
 
 NotNegative = Annotated[float, Field(ge=0.0)]
 
@@ -20,12 +20,6 @@ def _in_order(value: tuple[float, float]) -> tuple[float, float]:
 
 Range = Annotated[tuple[float, float], AfterValidator(_in_order)]
 """lowest and highest value"""
-
-
-class LinkConfig(BaseModel):
-    """Base of the configurations: frozen, unknown keys are errors, not-a-number is refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
 
 
 def quantity(default: Any, unit: str, description: str, **limits: Any) -> Any:

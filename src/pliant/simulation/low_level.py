@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.simulation.link_config import LinkConfig, quantity
+from pliant.configuration import Config
+from pliant.simulation.link_config import quantity
 from pliant.spatial import Array
 
 
-class TorqueLoopConfig(LinkConfig):
+class TorqueLoopConfig(Config):
     """Gains of the loop. With all gains 0 the desired torque goes straight to the motors."""
 
     period: float = quantity(1e-3, "s", "between two corrections", gt=0.0, le=0.1)

@@ -6,13 +6,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pliant.simulation.link_config import LinkConfig, quantity
+from pliant.configuration import Config
+from pliant.simulation.link_config import quantity
 from pliant.spatial import Array
 
 _TURN = 2.0 * math.pi
 
 
-class RippleConfig(LinkConfig):
+class RippleConfig(Config):
     """How strong the ripple is at a reference speed and force, and how fast it oscillates there."""
 
     amplitude: float = quantity(

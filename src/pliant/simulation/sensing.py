@@ -7,14 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pliant.configuration import Config
 from pliant.signals import Measurement
 from pliant.simulation.delay import Delay, whole_periods
-from pliant.simulation.link_config import LinkConfig, PerJoint, quantity
+from pliant.simulation.link_config import PerJoint, quantity
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array, as_vector
 
 
-class SensingConfig(LinkConfig):
+class SensingConfig(Config):
     """Delay and noise. Standard deviations are those of white Gaussian noise on every reading; 0 switches one off."""
 
     delay: float = quantity(0.0, "s", "age of every reading", ge=0.0, le=1.0)

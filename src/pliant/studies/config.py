@@ -7,16 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ValidationError
 
+from pliant.configuration import Config as Config
 from pliant.errors import ConfigError, options
-
-
-class Config(BaseModel):
-    """Base of every configuration: frozen, unknown keys are errors, not-a-number is refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
-
 
 C = TypeVar("C", bound=BaseModel)
 

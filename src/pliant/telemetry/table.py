@@ -16,14 +16,17 @@ def summary_table(summary: Summary) -> Table:
     """A table with one row per metric, grouped by case and controller."""
     title = f"{summary.study} · pliant {summary.version}" + ("" if summary.seed is None else f" · seed {summary.seed}")
     table = Table(title=title, title_justify="left", title_style="bold", header_style="bold", expand=False)
-    for heading in ("case", "controller", "metric"):
+    single = len(summary.cases) == 1
+    if single:
+        table.title = f"{title} · {summary.cases[0].case} · {summary.cases[0].controller}"
+    for heading in ("metric",) if single else ("case", "controller", "metric"):
         table.add_column(heading, overflow="fold")
     for heading in ("value", "paper", "target"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("unit")
     table.add_column("", width=1)
     for case in summary.cases:
-        _add_case(table, case)
+        _add_case(table, case, single)
     return table
 
 
@@ -64,8 +67,8 @@ def failed_text(case: Case) -> str:
     return f"{len(case.failures)} of {case.runs} runs failed: {first}{more}"
 
 
-def _add_case(table: Table, case: Case) -> None:
-    names = (case.case, case.controller)
+def _add_case(table: Table, case: Case, single: bool) -> None:
+    names = () if single else (case.case, case.controller)
     for metric in case.metrics:
         missed = metric.met is False
         mark = "" if metric.met is None else MISSED if missed else MET
@@ -78,10 +81,10 @@ def _add_case(table: Table, case: Case) -> None:
             metric.unit,
             Text(mark, style="bold red" if missed else "green"),
         )
-        names = ("", "")
+        names = () if single else ("", "")
     if case.failures:
         table.add_row(*names, Text(failed_text(case), style="bold red"), "", "", "", "", Text(MISSED, style="bold red"))
-        names = ("", "")
+        names = () if single else ("", "")
     if case.note:
         table.add_row(*names, Text(case.note, style="dim"))
     table.add_section()
