@@ -19,6 +19,7 @@ class SensingConfig(Config):
     """Delay and noise. Standard deviations are those of white Gaussian noise on every reading; 0 switches one off."""
 
     delay: float = quantity(0.0, "s", "age of every reading", ge=0.0, le=1.0)
+    delay_force: float = quantity(0.0, "s", "further age of the force/torque sensors' readings", ge=0.0, le=1.0)
     noise_q: PerJoint = quantity(0.0, "rad", "standard deviation of the joint positions")
     noise_v: PerJoint = quantity(0.0, "rad/s", "standard deviation of the joint velocities")
     noise_torque: PerJoint = quantity(0.0, "N·m", "standard deviation of the joint torque sensors")
@@ -35,6 +36,8 @@ class SensingState:
     """Readings under way, the generators, and what was drawn once. Consumed by `step`."""
 
     queue: tuple[Measurement, ...]
+    wrenches: tuple[Mapping[str, Array], ...]
+    """frame → (6,) under way from the force/torque sensors"""
     generators: dict[str, np.random.Generator]
     """source → generator"""
     torque_gain: Array
@@ -62,6 +65,8 @@ class Sensing:
     def __init__(self, config: SensingConfig, period: float, n: int) -> None:
         self.config = config
         self._delay: Delay[Measurement] = Delay(whole_periods(config.delay, period, "sensing delay"))
+        late = whole_periods(config.delay_force, period, "delay of the force signal")
+        self._delay_force: Delay[Mapping[str, Array]] = Delay(late)
         self._noise_q = as_vector(config.noise_q, n, "noise_q")
         self._noise_v = as_vector(config.noise_v, n, "noise_v")
         self._noise_torque = as_vector(config.noise_torque, n, "noise_torque")
@@ -74,6 +79,7 @@ class Sensing:
         mismatch = generator(seed, "sensing.mismatch")
         return SensingState(
             queue=self._delay.init(true),
+            wrenches=self._delay_force.init(true.wrenches),
             generators={source: generator(seed, f"sensing.{source}") for source in sources},
             torque_gain=1.0 + self.config.torque_gain_error * mismatch.uniform(-1.0, 1.0, self._n),
             torque_offset=self.config.torque_offset * mismatch.uniform(-1.0, 1.0, self._n),
@@ -91,6 +97,7 @@ class Sensing:
             until now: the controller knows that without a sensor.
         """
         old, state.queue = self._delay.step(true, state.queue)
+        felt, state.wrenches = self._delay_force.step(old.wrenches, state.wrenches)
         draw = state.generators
         reading = replace(
             old,
@@ -101,7 +108,7 @@ class Sensing:
             torque=state.torque_gain * old.torque
             + state.torque_offset
             + self._noise_torque * draw["torque"].standard_normal(self._n),
-            wrenches=self._noisy(old.wrenches, draw),
+            wrenches=self._noisy(felt, draw),
         )
         return reading, state
 
