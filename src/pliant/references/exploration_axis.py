@@ -17,6 +17,10 @@ down"""
 _RELIEF = 0.25  # s after a drop of F_d; a retreat at any other time answers noise or ringing and is left alone
 
 
+_HASTE = 2.0
+"""share of k_I in a retreat: what it regulates is the impedance's own spring, and the time-out of its phases waits"""
+
+
 class AxisPhase(IntEnum):
     """What an axis is doing."""
 
@@ -112,8 +116,13 @@ class ExploredAxis:
         self._switch(rules, active, period)
         if self.phase is AxisPhase.CONTACT:
             lasting = self.retreat.lasting(force)
-            self._learn(rules, limits.stiffness, lasting, time, period)
-            rate = -rules.gain * (wanted - lasting) / self.stiffness
+            if self.retreat.resting > 0.0:
+                self.forces.clear()  # the impedance switches: what the force does says nothing about the contact
+                self.targets.clear()
+            else:
+                self._learn(rules, limits.stiffness, lasting, time, period)
+            gain = _HASTE * rules.gain if self.retreat.began else rules.gain
+            rate = -gain * (wanted - lasting) / self.stiffness
             asked = self.relief > 0.0 and self.stiffness > 0.5 * limits.stiffness
             rate = min(max(rate, -rules.speed), rules.speed)
             free = self.offset + self.retreat.rate(rules, rate, force, wanted, period, asked) * period

@@ -6,6 +6,8 @@ import math
 
 from pliant.references.exploration_rules import AxisRules
 
+_REST = 0.008  # s in which the force of a rigid contact follows a jump of the impedance
+
 
 class Retreat:
     """What a fractal impedance does while its target retreats from a contact.
@@ -16,7 +18,7 @@ class Retreat:
     that is the desired one, or before F reaches zero, and it ends with a short step back towards the contact.
     """
 
-    __slots__ = ("began", "left", "turning", "waived")
+    __slots__ = ("began", "left", "resting", "turning", "waived")
 
     def __init__(self) -> None:
         self.end()
@@ -31,6 +33,8 @@ class Retreat:
         """s that the step back may still last"""
         self.left = 0.0
         """F when the step back began, N"""
+        self.resting = 0.0
+        """s for which the target still waits until the impedance has returned to its spring"""
 
     def lasting(self, force: float) -> float:
         """The force that the spring would give here, N."""
@@ -39,11 +43,15 @@ class Retreat:
     def rate(self, rules: AxisRules, rate: float, force: float, wanted: float, period: float, asked: bool) -> float:
         """Motion of the target, m/s, given the one that the regulator asks for."""
         inward = math.copysign(rate, rate * wanted)
+        if self.resting > 0.0:
+            self.resting -= period
+            return 0.0
         if self.turning > 0.0:
             self.turning -= period
             returned = abs(force - self.left) > 0.5 * abs(self.lasting(self.left) - self.left)
             if returned or self.turning <= 0.0:
                 self.end()
+                self.resting = _REST
                 return 0.0
             return -math.copysign(rules.turn_speed, wanted)
         if not self.began:
