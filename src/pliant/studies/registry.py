@@ -11,6 +11,7 @@ from pliant.studies.base import Study
 _MODULES = {
     "stack": "pliant.studies.stack",
     "polishing": "pliant.studies.polishing",
+    "haptic": "pliant.studies.haptic",
 }
 """name → module with a `STUDY`; imported when it is asked for"""
 

@@ -1,0 +1,15 @@
+"""The cases of the haptic study: who does what when, and what it should come to.
+
+The foot is a sphere of 20 mm radius: a target at height z + 0.02 m touches a surface at height z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pliant.studies.haptic.cases_ball import BALL_CASES
+from pliant.studies.haptic.cases_floor import FLOOR_CASES
+from pliant.studies.haptic.config import HapticConfig
+
+CASES: Mapping[str, HapticConfig] = {config.case: config for config in (*FLOOR_CASES, *BALL_CASES)}
+"""name → configuration; the first is what `pliant run haptic` does"""

@@ -1,0 +1,214 @@
+"""Typed configuration of the haptic study.
+
+Source of the task: [HapFIC] Tiseo et al. 2021, sec. III. What the paper leaves open (timing, places, gravity) is
+chosen here. The paper's torque is the transposed Jacobian times the wrench (eq. 5), without a gravity term, and it does
+not say whether the simulated leg is weightless or compensates itself: here the robot compensates gravity by itself,
+see `hardware.compensation`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from pliant.controllers.attractor import Law
+from pliant.controllers.profiles import Shape
+from pliant.errors import PliantError
+from pliant.references.exploration_config import ExplorationConfig
+from pliant.signals import ImpedanceTuning
+from pliant.studies.base import CaseConfig
+from pliant.studies.config import Config
+
+Vector = tuple[float, float, float]
+NotNegative = Annotated[float, Field(ge=0.0)]
+Triple = tuple[NotNegative, NotNegative, NotNegative]
+
+
+def quantity(default: Any, unit: str, description: str, **limits: Any) -> Any:
+    """A field with a unit."""
+    return Field(default, description=description, json_schema_extra={"unit": unit}, **limits)
+
+
+class Impedance(Config):
+    """The fractal impedance at the foot; x, y, z. Defaults: [HapFIC] sec. III."""
+
+    stiffness: Triple = quantity((6000.0, 6000.0, 12000.0), "N/m", "K_0: force per error near the target")
+    force_max: Triple = quantity((150.0, 150.0, 300.0), "N", "F_max: the force of the impedance never exceeds it")
+    range: Triple = quantity(
+        (0.025, 0.025, 0.025), "m", "x_b: error at which F_max is reached, and bound of the exploration"
+    )
+    law: Law = Field(default=Law.CAPPED, description="force on the way back to the target")
+    profile: Shape = Field(default=Shape.TANH, description="how the force bends towards F_max")
+
+    def tuning(self) -> ImpedanceTuning:
+        """The numbers as a value that references carry."""
+        return ImpedanceTuning(np.array(self.stiffness), np.array(self.force_max), np.array(self.range))
+
+    @model_validator(mode="after")
+    def _is_possible(self) -> Self:
+        try:
+            self.tuning()
+        except PliantError as error:
+            raise ValueError(str(error)) from None
+        return self
+
+
+class Material(Config):
+    """What a thing feels like. Defaults: the rigid objects of [HapFIC] sec. III."""
+
+    stiffness: float = quantity(1e6, "N/m", "K of every contact point", gt=0.0)
+    damping: float = quantity(1e4, "N s/m", "D", ge=0.0)
+    friction: float = quantity(0.5, "1", "Coulomb coefficient at rest", ge=0.0)
+    friction_moving: float = quantity(0.3, "1", "Coulomb coefficient while sliding", ge=0.0)
+
+
+SMOOTH = Material(friction=0.0, friction_moving=0.0)
+SOFT = Material(stiffness=1e3, damping=1e2)
+
+
+class Floor(Config):
+    """A plane through a point on the world's z axis."""
+
+    height: float = quantity(0.0, "m", "where it meets the world's z axis")
+    tilt: Vector = quantity((0.0, 0.0, 0.0), "rad", "about the world's x and y axes; the third is not used")
+    material: Material = SMOOTH
+
+
+class BoxConfig(Config):
+    """A rigid box."""
+
+    size: Vector = quantity((0.12, 0.2, 0.2), "m", "edge lengths")
+    position: Vector = quantity((0.21, 0.0, 0.1), "m", "of its centre")
+    mass: float = quantity(2.0, "kg", "0: fixed to the world", ge=0.0)
+    material: Material = Material()
+
+
+class BallConfig(Config):
+    """A soft ball."""
+
+    radius: float = quantity(0.1, "m", "", gt=0.0)
+    position: Vector = quantity((0.12, 0.0, 0.1), "m", "of its centre")
+    mass: float = quantity(0.5, "kg", "0: fixed to the world", ge=0.0)
+    material: Material = SOFT
+
+
+class Environment(Config):
+    """What stands around the leg; contacts follow the explicit law with stiction."""
+
+    floor: Floor | None = Floor()
+    box: BoxConfig | None = None
+    ball: BallConfig | None = None
+    shank: bool = Field(default=False, description="whether the shank touches things, too")
+
+
+class Hardware(Config):
+    """How the leg's joints, drives and sensors behave."""
+
+    compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(
+        default="gravity", description="what the leg compensates by itself; the paper does not say"
+    )
+    joint_damping: float = quantity(0.0, "N·m s/rad", "in the joints' mechanics", ge=0.0)
+    bandwidth: float | None = quantity(None, "Hz", "first-order torque response of the drives; none: immediate", gt=0.0)
+    peak_torque: float | None = quantity(None, "N·m", "largest motor torque; none: the robot's limit", gt=0.0)
+    force_noise: float = quantity(0.0, "N", "standard deviation of the force sensor's white noise", ge=0.0)
+    force_delay: float = quantity(0.0, "s", "age of the force signal", ge=0.0)
+    command_delay: float = quantity(0.0, "s", "from a measurement to the effect of its command", ge=0.0)
+
+    @property
+    def perfect(self) -> bool:
+        """Whether nothing stands between controller and plant."""
+        return (
+            self.bandwidth is None
+            and self.peak_torque is None
+            and not (self.force_noise or self.force_delay or self.command_delay)
+        )
+
+
+class Planner(Config):
+    """How targets that jump become motion."""
+
+    kind: Literal["superposition", "attractor"] = Field(
+        default="superposition",
+        description="superposition: never leaves the hull of the targets; attractor: [HapFIC] eq. 2-3, corrected",
+    )
+    speed: float = quantity(0.2, "m/s", "fastest motion of the target", gt=0.0)
+    acceleration: float = quantity(2.0, "m/s²", "largest acceleration of the target", gt=0.0)
+
+
+class Step(Config):
+    """What the user changes at a time. What is not given stays as it was."""
+
+    time: float = quantity(0.0, "s", "since the start", ge=0.0)
+    name: str = Field(default="", description="of the phase that begins, for figures")
+    target: Vector | None = quantity(None, "m", "of the foot")
+    force: Vector | None = quantity(None, "N", "F_d: desired reaction of the environment on the foot")
+    stiffness: Triple | None = quantity(None, "N/m", "K_0")
+    force_max: Triple | None = quantity(None, "N", "F_max")
+    range: Triple | None = quantity(None, "m", "x_b")
+    reset: bool | None = Field(default=None, description="let the offset return when contact is lost")
+
+
+class Check(Config):
+    """One metric: of which signal, when, and what it should keep to. All on true signals."""
+
+    kind: Literal[
+        "rms",
+        "max",
+        "settle",
+        "breaks",
+        "peak",
+        "lateral",
+        "return",
+        "offset",
+        "off-bound",
+        "beyond-bound",
+        "unreachable",
+        "tilt",
+        "speed",
+        "over",
+        "share",
+    ] = Field(description="what is measured; see `pliant.studies.haptic.measure`")
+    name: str
+    begin: float = quantity(0.0, "s", "start of the window; the command's time for `settle`")
+    end: float | None = quantity(None, "s", "end of the window; none: of the run")
+    axis: int = Field(default=2, ge=0, le=2, description="x, y, z")
+    wanted: float = quantity(0.0, "N", "force that was asked for")
+    before: float | None = quantity(None, "N", "force before a step; none: the true force at its command")
+    target: float | None = Field(default=None, description="bound of the metric")
+
+
+class HapticConfig(CaseConfig):
+    """One run of the leg."""
+
+    controller: Literal["haptic", "haptic-paper", "haptic-hold"] = Field(
+        default="haptic",
+        description="haptic: pliant's; haptic-paper: as printed, but for the planner; haptic-hold: impedance alone",
+    )
+    robot: str = Field(default="leg3", description="catalogue name, or path of a URDF or MJCF file")
+    frame: str = Field(default="foot", description="frame that presses; it carries the force sensor")
+    sensor: bool = Field(default=True, description="whether there is a force sensor at the frame")
+    duration: float = Field(default=7.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    period: float = quantity(1e-3, "s", "control period", gt=0.0)
+    physics_step: float = quantity(2e-5, "s", "", gt=0.0)
+    environment: Environment = Environment()
+    impedance: Impedance = Impedance()
+    exploration: ExplorationConfig = ExplorationConfig()
+    planner: Planner = Planner()
+    hardware: Hardware = Hardware()
+    start: tuple[float, ...] | None = quantity(None, "rad", "joint positions at the start; none: the robot's home")
+    steps: tuple[Step, ...] = Field(
+        min_length=1, description="what the user does, in order of time; the first one gives target and force"
+    )
+    checks: tuple[Check, ...] = Field(default=(), description="what the run is judged by")
+    snapshots: tuple[float, ...] = quantity((), "s", "moments that are drawn")
+
+    @model_validator(mode="after")
+    def _is_in_order(self) -> Self:
+        first = self.steps[0]
+        if first.time != 0.0 or first.target is None:
+            raise ValueError("the first step must be at time 0 and have a target")
+        if any(b.time <= a.time for a, b in zip(self.steps[:-1], self.steps[1:], strict=True)):
+            raise ValueError("the times of the steps must increase")
+        return self

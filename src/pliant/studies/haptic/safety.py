@@ -1,0 +1,122 @@
+"""What is unsafe about a configuration, said before it runs: gains, actuators, forces and places out of reach."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pliant.controllers.advice import advise, sentences, smallest_inertia
+from pliant.robot import Robot
+from pliant.signals import ImpedanceTuning
+from pliant.spatial import Array
+from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.script import Wish, wishes
+
+_KNEE_SPEED = 0.05  # m/s at which the foot may cross the knee of the profile: the planner's speeds leave it far behind
+_SAFE_GAIN = 0.1  # k_I over the actuators' bandwidth in rad/s
+
+
+def warnings_of(config: HapticConfig, robot: Robot) -> tuple[str, ...]:
+    """Sentences, each with the value that would be safe; none if all is well."""
+    found: list[str] = []
+    found += _gains(config, robot)
+    found += _exploration_gain(config)
+    reach = farthest_reach(robot, config.frame)
+    hip = _first_joint(robot)
+    for time, wish in wishes(config, config.exploration):
+        found += [f"t = {time:g} s: {text}" for text in [*_force_bounds(wish), *_distance(wish, hip, reach)]]
+    return tuple(dict.fromkeys(found))
+
+
+def _gains(config: HapticConfig, robot: Robot) -> list[str]:
+    """ω T_s, the actuators' bandwidth and the leak at the knee, at the start and at every tuning of the steps."""
+    bandwidth = config.hardware.bandwidth
+    q = robot.home if config.start is None else np.array(config.start)
+    inertia = _inertia(robot, config.frame, q)
+    tunings: list[ImpedanceTuning] = []
+    for _, wish in wishes(config, config.exploration):
+        if all(wish.tuning is not known for known in tunings):
+            tunings.append(wish.tuning)
+    found: list[str] = []
+    for tuning in tunings:
+        found += sentences(
+            advise(
+                tuning,
+                config.period,
+                inertia,
+                shape=config.impedance.profile,
+                torque_bandwidth=None if bandwidth is None else 2.0 * math.pi * bandwidth,
+                speed=_KNEE_SPEED,
+            )
+        )
+    return found
+
+
+def _inertia(robot: Robot, frame: str, q: Array) -> Array:
+    return smallest_inertia(robot, frame, q)[:3]
+
+
+def _exploration_gain(config: HapticConfig) -> list[str]:
+    if config.hardware.bandwidth is None or config.controller != "haptic":
+        return []
+    safe = _SAFE_GAIN * 2.0 * math.pi * config.hardware.bandwidth
+    if config.exploration.gain <= safe * (1.0 + 1e-9):
+        return []
+    return [
+        f"the exploration corrects the force at {config.exploration.gain:g} /s, too fast for actuators of"
+        f" {config.hardware.bandwidth:g} Hz; safe: exploration.gain ≤ {safe:.3g} /s"
+    ]
+
+
+def _force_bounds(wish: Wish) -> list[str]:
+    """Forces beyond F_max: the exploration clamps them and reports the rest."""
+    found: list[str] = []
+    for axis, force, bound in zip("xyz", wish.force, wish.tuning.force_max, strict=True):
+        if abs(force) > bound:
+            found.append(
+                f"{force:g} N along {axis} exceed F_max = {bound:g} N and are clamped to it; safe: |F_d| ≤ {bound:g} N"
+            )
+    return found
+
+
+def _distance(wish: Wish, hip: Array, reach: float) -> list[str]:
+    distance = float(np.linalg.norm(np.array(wish.target) - hip))
+    if distance <= reach:
+        return []
+    return [
+        f"the target {list(wish.target)} m lies {distance:.3f} m from the first joint, beyond the reach of"
+        f" {reach:.3f} m; the impedance pulls with at most F_max towards it"
+    ]
+
+
+def farthest_reach(robot: Robot, frame: str) -> float:
+    """Largest distance of a frame from the first joint, m: the sum of the links' lengths, which no posture exceeds."""
+    model = robot.model
+    at = model.frames[robot.frame_id(frame)]
+    length, joint = float(np.linalg.norm(at.placement.translation)), at.parentJoint
+    while joint > 1:
+        length += float(np.linalg.norm(model.jointPlacements[joint].translation))
+        joint = model.parents[joint]
+    return length
+
+
+def _first_joint(robot: Robot) -> Array:
+    return np.array(robot.model.jointPlacements[1].translation)
+
+
+def reachable_force(depth: float, surface_stiffness: float, stiffness: float, force_max: float, bound: float) -> float:
+    """Largest force on a surface: min(F_max, (x_b + p) K_e K_0/(K_e + K_0)).
+
+    Args:
+        depth: p of the target below the surface, m.
+        surface_stiffness: K_e, N/m.
+        stiffness: K_0, N/m.
+        force_max: F_max, N.
+        bound: x_b, m.
+
+    Returns:
+        N.
+    """
+    series = surface_stiffness * stiffness / (surface_stiffness + stiffness)
+    return min(force_max, max(bound + depth, 0.0) * series)
