@@ -35,7 +35,7 @@ from pliant.telemetry.summary import Metric
 BALANCE_FORCES = (0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0)
 """N, strengths of the elbow's task that the balance case runs through"""
 _REFERENCE, _ACTUAL = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0)
-_CAMERA = Camera(look_at=(0.0, -0.34, 0.40), distance=1.6, azimuth=28.0, elevation=-12.0)
+_CAMERA = Camera(look_at=(0.0, -0.30, 0.34), distance=1.35, azimuth=28.0, elevation=-12.0)
 
 
 def run_figures(config: StackConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
@@ -79,7 +79,7 @@ def _scene(config: StackConfig, experiment: Experiment, log: Log, tool: str) -> 
     )
     solid = [Snapshot(q[i], paths) for i in moments]
     ghost = [Snapshot(log["reference/posture"][i], paths) for i in moments]
-    size = {"width": 560, "height": 640}
+    size = {"width": 600, "height": 520}
     pictures = render(experiment.plant.model, [*solid, *ghost], _CAMERA, **size)
     if pictures is None:
         return None
@@ -89,7 +89,7 @@ def _scene(config: StackConfig, experiment: Experiment, log: Log, tool: str) -> 
 
 
 def _strip(pictures: Sequence[Array], times: Array, title: str) -> Figure:
-    made = style.figure(10.4, 3.6, f"{title}: reference blue and pale, actual orange and solid")
+    made = style.figure(10.4, 2.9, f"{title}: reference blue and pale, actual orange and solid")
     for ax, picture, time in zip(made.subplots(1, len(pictures)), pictures, times, strict=True):
         ax.imshow(picture.astype(np.uint8))
         ax.set_axis_off()
