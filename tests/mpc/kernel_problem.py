@@ -21,7 +21,7 @@ def polishing(
     bounds: bool = False,
     horizon: int = HORIZON,
 ) -> tuple[_mpc.Solver, Vector]:
-    """Solver with the weights of [FFMPC]'s circle phase pressing 20 N at the robot's home, and the state at rest there."""
+    """Solver with the weights of [FFMPC]'s circle phase pressing 20 N at the robot's home; state at rest there."""
     model = _mpc.Model(kind, dim, axes, baumgarte=(0.0, 10.0))
     solver = _mpc.Solver(robot.chain, model, horizon, DT, bounds=bounds)
     n, p = robot.model.nv, solver.nodes

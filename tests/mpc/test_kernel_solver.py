@@ -1,4 +1,4 @@
-"""The stagewise SQP: against dense algebra, from large errors, over instruction sets, threads, budgets and bad input."""
+"""The stagewise SQP: against dense algebra, from large errors, over instruction sets, threads and budgets."""
 
 from __future__ import annotations
 

@@ -32,8 +32,11 @@ inline void make_stage_bounds(const NodeData &data, const ModelData &model, int 
         b.torque_upper.set(i, data.torque_upper[i]);
         b.torque = b.torque || isfinite(data.torque_lower[i]) || isfinite(data.torque_upper[i]);
     }
-    const bool state = model.kind == Kind::force_feedback; // the first state is measured, not chosen
-    const bool here = data.contact_active && model.contact_dim > 0 && (state ? !first : !terminal);
+    // Where the force follows from the state alone, the first one is measured, not chosen; the last node has a force
+    // only where it is part of the state.
+    const bool chosen = !first || model.kind == Kind::classical;
+    const bool known = !terminal || model.kind == Kind::force_feedback;
+    const bool here = data.contact_active && model.contact_dim > 0 && chosen && known;
     b.forces = 0;
     for (int c = 0; c < model.contact_dim; ++c) {
         b.force_lower[c] = data.force_lower[c];

@@ -28,6 +28,12 @@ template <int J_, Extra extra_, int M_> struct Layout {
     }
 };
 
+// Lanes 7 and 15 of seven joints when no force is packed there: rows that stay zero.
+template <class L> PLIANT_INLINE bool idle(int lane) {
+    constexpr bool idle7 = !L::used(7), idle15 = !L::used(15);
+    return (idle7 && lane == 7) || (idle15 && lane == 15);
+}
+
 // One number per state component.
 template <class L> struct alignas(64) Row {
     Lanes block[L::blocks];

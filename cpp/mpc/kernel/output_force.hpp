@@ -159,6 +159,26 @@ PLIANT_INLINE void output_force_tangent(const ModelData &model, const Stage &s, 
     for (int i = 0; i < J; ++i) set_row<L>(a_q[i], a_v[i], a_torque[i], n.rate_x[i], n.rate_u[i]);
 }
 
+// Joint i's pair r_τ = τ_i + c(x), r_w = w_i + c(x), c with derivative row_x: one outer product and the rows of τ_i, w_i.
+template <class L>
+PLIANT_INLINE void add_filtered_residuals(NodeValues<L> &n, int i, const Row<L> &row_x, double weight, double residual,
+                                          double weight_w, double residual_w) {
+    const int lane_torque = 16 + i;
+    const double both = weight + weight_w;
+    add_scaled(n.Lx, row_x, weight * residual + weight_w * residual_w);
+    n.Lx.add(lane_torque, weight * residual);
+    n.Lu.add(i, weight_w * residual_w);
+    n.Luu[i].add(i, weight_w);
+    add_scaled(n.Lux[i], row_x, weight_w);
+#pragma GCC unroll 1
+    for (int k = 0; k < L::size; ++k) {
+        add_scaled(n.Lxx[k], row_x, both * row_x[k]);
+        n.Lxx[k].add(lane_torque, weight * row_x[k]);
+    }
+    add_scaled(n.Lxx[lane_torque], row_x, weight);
+    n.Lxx[lane_torque].add(lane_torque, weight);
+}
+
 // Torque about gravity under load: r = τ − (g(q) − Jᵀλ) and, with a torque filter, r_w = w − (g(q) − Jᵀλ)
 // [FFMPC eq. 25.3, 28], where λ = λ(x, u).
 template <class L>
@@ -186,13 +206,7 @@ PLIANT_INLINE void gravity_cost(const OutputPass<L::J> &o, const Stage &s, const
         Lanes row_u;
         if constexpr (L::has_torque) {
             set_row<L>(by_q, by_v, by_torque, row_x, row_u);
-            const double w = s.control_weight[i], slope = w * residual_w[i];
-            add_state_residual(n, row_x, w, residual_w[i]);
-            n.Lu.add(i, slope);
-            n.Luu[i].add(i, w);
-            add_scaled(n.Lux[i], row_x, w);
-            row_x.add(16 + i, 1);
-            add_state_residual(n, row_x, s.torque_weight[i], residual[i]);
+            add_filtered_residuals(n, i, row_x, s.torque_weight[i], residual[i], s.control_weight[i], residual_w[i]);
         } else {
             by_torque.add(i, 1);
             set_row<L>(by_q, by_v, by_torque, row_x, row_u);

@@ -179,6 +179,10 @@ template <class L>
 
 #pragma GCC unroll 1
     for (int r = 0; r < L::size; ++r) { // P = L_xx + EᵀPE + rate_xᵀ GᵀPE + Zᵀ rate_x − YᵀY
+        if (idle<L>(r)) {
+            now.P[r] = zero_row<L>();
+            continue;
+        }
         Row<L> left = P[r];
         if (r >= 8 && r < 8 + J) add_scaled(left, P[r - 8], s.dt);
         if constexpr (L::has_torque)

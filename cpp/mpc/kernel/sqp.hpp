@@ -255,7 +255,7 @@ template <class L> double Solver<L>::update_multipliers(const Iterate<L> &it) {
 
 // Direction under the bounds, by the method of bounds.hpp.
 template <class L> bool Solver<L>::bounded_step(double tolerance, Report &report) {
-    constexpr int most_factorisations = 20;
+    constexpr int most_factorisations = 12;
     const Iterate<L> &it = current();
     const int N = options.horizon;
     for (int k = 0; k <= N; ++k) {

@@ -1,0 +1,25 @@
+# The kernel's instruction-set copies: which there are, and how each is compiled.
+
+# -ffp-contract=fast: fused multiply-add where the set has it. -Wno-psabi: GCC's notice that 64-byte vectors are passed
+# differently with and without AVX-512; here every function with such an argument is inlined into its copy.
+set(PLIANT_MPC_KERNEL_FLAGS -O2 -fno-math-errno -fno-trapping-math -ffp-contract=fast -fvisibility=hidden -Wno-psabi)
+set(PLIANT_MPC_FLAGS_avx2 -mavx2 -mfma -mbmi2)
+set(PLIANT_MPC_FLAGS_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mavx2 -mfma -mbmi2)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
+  set(PLIANT_MPC_ISAS sse2 avx2 avx512)
+else()
+  set(PLIANT_MPC_ISAS neon)
+endif()
+set(PLIANT_MPC_KERNEL_SOURCE ${CMAKE_CURRENT_LIST_DIR}/kernel/engine.cpp)
+
+# One object library PREFIX_isa per copy; their objects go to the variable named by RESULT. Further arguments: flags.
+function(pliant_mpc_kernel prefix result)
+  set(objects)
+  foreach(isa IN LISTS PLIANT_MPC_ISAS)
+    add_library(${prefix}_${isa} OBJECT ${PLIANT_MPC_KERNEL_SOURCE})
+    target_compile_definitions(${prefix}_${isa} PRIVATE PLIANT_ISA=${isa})
+    target_compile_options(${prefix}_${isa} PRIVATE ${PLIANT_MPC_KERNEL_FLAGS} ${PLIANT_MPC_FLAGS_${isa}} ${ARGN})
+    list(APPEND objects $<TARGET_OBJECTS:${prefix}_${isa}>)
+  endforeach()
+  set(${result} ${objects} PARENT_SCOPE)
+endfunction()
