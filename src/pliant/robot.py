@@ -224,7 +224,7 @@ class Robot:
         if tool.mass > 0.0:
             rod = pin.Inertia.FromCylinder(tool.mass, tool.radius, tool.length)
             model.appendBodyToJoint(carrier.parentJoint, rod, middle)
-        return replace(robot, model=model, visual=_with_rod(robot.visual, carrier.parentJoint, middle, tool))
+        return replace(robot, model=model, visual=_with_rod(robot.visual, carrier, robot.frame_id(tool.parent), middle, tool))
 
     def _with_catalogue_data(self, rotor_inertia: float, home: tuple[float, ...], radii: Mapping[str, float]) -> Robot:
         self.model.armature = np.full(self.n, rotor_inertia)
@@ -232,13 +232,17 @@ class Robot:
         return replace(self, home=start, contact_radius=dict(radii))
 
 
-def _with_rod(visual: pin.GeometryModel | None, joint: int, middle: pin.SE3, tool: Tool) -> pin.GeometryModel | None:
+def _with_rod(
+    visual: pin.GeometryModel | None, carrier: pin.Frame, frame: int, middle: pin.SE3, tool: Tool
+) -> pin.GeometryModel | None:
     import coal
 
     if visual is None:
         return None
     shown = pin.GeometryModel(visual)
-    rod = pin.GeometryObject(f"{tool.frame}_rod", joint, middle, coal.Cylinder(tool.radius, tool.length))
+    # With its frame: pinocchio looks it up when joints are locked, and reads past the end without one.
+    cylinder = coal.Cylinder(tool.radius, tool.length)
+    rod = pin.GeometryObject(f"{tool.frame}_rod", carrier.parentJoint, frame, middle, cylinder)
     rod.meshColor = np.array([0.75, 0.77, 0.80, 1.0])
     shown.addGeometryObject(rod)
     return shown
