@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 from pliant.errors import ConfigError
-from pliant.mpc.config import ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.config import Bounds, ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
 from pliant.mpc.nodes import copy_nodes
 from pliant.mpc.problem import problem_from_model
 from pliant.spatial import Array
@@ -81,6 +81,25 @@ def test_fddp_finds_the_same_optimum() -> None:
     fddp.th_stop = 1e-14
     assert fddp.solve(list(xs), list(us), 50, False, REGULARISATION)
     np.testing.assert_allclose(np.array(fddp.us.tolist()), ours.us, atol=1e-4)
+
+
+def test_bounded_problem_agrees_with_csqp() -> None:
+    robot = polishing_arm()
+    settings = ForceFeedbackMpc(bounds=Bounds(torque=True))
+    problem, chain, solver = posed(robot, settings, np.array([0.05, 0.0, 0.0]), 30.0)
+    solver.nodes.torque_upper[:, 1] = -20.0  # N·m, active: free it wants more
+    x0 = start_state(problem, robot, np.random.default_rng(0))
+    solver.quasi_static(x0)
+    xs, us = solver.xs, solver.us
+    ours = solver.solve(x0, xs, us, max_iterations=30, tolerance=1e-6)
+    csqp = mim_solvers.SolverCSQP(shooting_problem(problem, solver.nodes, x0, chain, constraints=True))
+    csqp.termination_tolerance, csqp.eps_abs, csqp.eps_rel, csqp.max_qp_iters = 1e-6, 1e-10, 0.0, 5000
+    csqp.use_filter_line_search = True
+    csqp.solve(list(xs), list(us), 30, False, REGULARISATION)
+    theirs = np.array(csqp.us.tolist())
+    assert ours.us[:, 1].max() <= -20.0 + 1e-4
+    assert np.any(np.abs(ours.us[:, 1] + 20.0) < 1e-3), "the bound should be active"
+    np.testing.assert_allclose(theirs, ours.us, rtol=1e-4, atol=5e-3)  # what the inner ADMM of CSQP is good for
 
 
 def test_a_tree_with_a_free_base_is_solved() -> None:

@@ -146,6 +146,8 @@ def test_weights_follow_the_cost_convention() -> None:
     weights = term.along(horizon=3, size=4, dt=0.01, name="x")
     np.testing.assert_allclose(weights[:3], np.tile([18.0, 2.0, 2.0, 2.0], (3, 1)))
     np.testing.assert_allclose(weights[3], 0.01 * 5.0 * np.array([9.0, 1.0, 1.0, 1.0]))
+    arm = Term(weight=1.0, activation=(4.0, 3.0, 2.0)).along(1, 2, 0.01, "x", per_joint=True)
+    np.testing.assert_allclose(arm[0], [16.0, 9.0])  # a list for a longer arm
     growing = Term(weight=5.0, per_node=2.0, terminal_times_dt=False)
     np.testing.assert_allclose(growing.along(4, 1, 0.01, "x")[:, 0], [0.0, 2.0, 4.0, 5.0, 5.0])
 

@@ -21,7 +21,9 @@ class Term(ControllerConfig):
         default=0.0, ge=0.0, description="scalar weight w of the running nodes, in the unit of the term"
     )
     activation: tuple[float, ...] = Field(
-        default=(1.0,), min_length=1, description="a per component, squared; the last one counts for all that follow"
+        default=(1.0,),
+        min_length=1,
+        description="a per component, squared; the last one counts for all that follow",
     )
     terminal: float | None = Field(default=None, ge=0.0, description="w of the last node; None: as the running ones")
     terminal_times_dt: bool = Field(default=True, description="whether the last node's weight is multiplied by dt too")
@@ -36,7 +38,7 @@ class Term(ControllerConfig):
             raise ValueError("an activation must not be negative")
         return value
 
-    def along(self, horizon: int, size: int, dt: float, name: str) -> Array:
+    def along(self, horizon: int, size: int, dt: float, name: str, *, per_joint: bool = False) -> Array:
         """Weights of the N + 1 nodes, in the units of the solver (running nodes without dt, the last one with it).
 
         Args:
@@ -44,6 +46,7 @@ class Term(ControllerConfig):
             size: number of components of the residual.
             dt: s.
             name: of the term, for the error.
+            per_joint: the components are joints: a list made for a longer arm counts as far as there are joints.
 
         Returns:
             (N+1, size) w a².
@@ -51,9 +54,10 @@ class Term(ControllerConfig):
         Raises:
             ConfigError: more activations than components.
         """
-        if len(self.activation) > size:
+        if len(self.activation) > size and not per_joint:
             raise ConfigError(f"cost {name!r} has {size} components, got {len(self.activation)} activations")
-        squared = np.square(np.pad(np.array(self.activation), (0, size - len(self.activation)), mode="edge"))
+        given = np.array(self.activation[:size])
+        squared = np.square(np.pad(given, (0, size - len(given)), mode="edge"))
         scalar = np.full(horizon + 1, self.weight)
         if self.terminal is not None:
             scalar[-1] = self.terminal

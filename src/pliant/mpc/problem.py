@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from pliant.errors import ConfigError, RobotError, ShapeError, options
 from pliant.mpc.config import MpcConfig
+from pliant.mpc.costs import Term
 from pliant.mpc.horizon import HorizonReference
 from pliant.mpc.nodes import NodeParameters, PlainNodes
 from pliant.robot import Robot
@@ -179,18 +180,19 @@ def _weights(config: MpcConfig, phase: str, nv: int, nu: int) -> dict[str, Array
     costs = config.phases[phase].over(config.costs)
     m = 0 if config.kind == "free" else config.contact.dimension
 
-    def along(name: str, size: int) -> Array:
-        return getattr(costs, name).along(config.horizon, size, config.dt, f"{name} (phase {phase!r})")
+    def along(name: str, size: int, *, per_joint: bool = False) -> Array:
+        term: Term = getattr(costs, name)
+        return term.along(config.horizon, size, config.dt, f"{name} (phase {phase!r})", per_joint=per_joint)
 
     table = {
-        "state_weight": np.hstack([along("posture", nv), along("joint_velocity", nv)]),
-        "torque_gravity_weight": along("torque", nu),
+        "state_weight": np.hstack([along("posture", nv, per_joint=True), along("joint_velocity", nv, per_joint=True)]),
+        "torque_gravity_weight": along("torque", nu, per_joint=True),
         "translation_weight": along("translation", 3),
         "rotation_weight": along("rotation", 3),
         "velocity_weight": along("velocity", 6),
     }
     if config.kind == "torque_feedback":
-        table["control_gravity_weight"] = along("unfiltered_torque", nu)
+        table["control_gravity_weight"] = along("unfiltered_torque", nu, per_joint=True)
     if m:
         table["force_weight"] = along("force", m)
     if config.kind == "force_feedback":

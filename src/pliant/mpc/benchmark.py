@@ -1,0 +1,261 @@
+"""How long the predictive controllers take: per node, per iteration, per solve in a warm-started noisy loop.
+
+Times of one machine say little to another, so that the same run also times a yardstick: one call of
+`pinocchio.computeABADerivatives` from Python on the same robot.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from pliant import _mpc
+from pliant.errors import MissingExtraError
+from pliant.mpc.chain import chain_from_robot
+from pliant.mpc.config import Bounds, ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.controller import kernel_model, kernel_solver
+from pliant.mpc.horizon import HorizonReference
+from pliant.mpc.problem import MpcProblem, problem_from_robot
+from pliant.robot import Robot, Tool
+from pliant.spatial import Array
+
+_PHASE = "circle"
+_RADIUS, _SPEED, _FORCE = 0.07, 3.0, 50.0  # m, rad/s, N: the polishing circle
+_PERIOD = 2e-3  # s between two solves
+
+
+@dataclass(frozen=True)
+class BenchCase:
+    """What is timed."""
+
+    name: str
+    config: MpcConfig
+    robot: Robot
+
+
+def run(
+    solves: int = 2000,
+    *,
+    pause: float = 2e-3,
+    paused_solves: int = 200,
+    bridge_solves: int = 100,
+    growth: bool = True,
+    robot: str = "iiwa14",
+) -> dict[str, Any]:
+    """Times nodes and solves of the three controllers on a seven-joint arm.
+
+    Args:
+        solves: of each case, back to back.
+        pause: s of sleep before each of `paused_solves` solves more: caches are cold then, as on a busy robot.
+        paused_solves: how many; 0 for none.
+        bridge_solves: of the force-feedback problem by mim-solvers over the same nodes; 0, or crocoddyl missing: none.
+        growth: also time how the cost grows with horizon, joints and contact dimension.
+        robot: catalogue name, with a frame `flange`.
+
+    Returns:
+        {"unit": "µs", "instruction_set", "robot", "yardstick": statistics, "cases": {name: {"node", "hot", "paused"}},
+        "bridge": …, "growth": …}. Statistics are {"median", "p90", "p99", "max"}; "hot" and "paused" hold "cpu",
+        "wall", "per_iteration", "iterations", "kkt_reached" and "in_yardsticks" (CPU median over the yardstick's).
+    """
+    arm = Robot.load(robot, tool=Tool())
+    yardstick = _yardstick(arm, max(solves, 100))
+    cases = {case.name: _timed(case, solves, pause, paused_solves, yardstick) for case in _cases(arm)}
+    result: dict[str, Any] = {
+        "unit": "µs",
+        "instruction_set": _mpc.instruction_set(),
+        "robot": f"{arm.name}, {arm.n} joints",
+        "horizon": 5,
+        "dt": 3e-3,
+        "tolerance": 1e-4,
+        "yardstick": {"what": "pinocchio.computeABADerivatives from Python", **yardstick},
+        "cases": cases,
+    }
+    if bridge_solves:
+        result["bridge"] = _bridge(BenchCase("force feedback, 1-D", ForceFeedbackMpc(), arm), bridge_solves)
+    if growth:
+        result["growth"] = _growth(arm, max(solves // 10, 20))
+    return result
+
+
+def _cases(arm: Robot) -> list[BenchCase]:
+    ff = ForceFeedbackMpc()
+    spatial = ff.model_copy(update={"contact": ff.contact.model_copy(update={"dimension": 3})})
+    bounded = ff.model_copy(update={"bounds": Bounds(torque=True, force_max=200.0)})
+    return [
+        BenchCase("force feedback, 1-D", ff, arm),
+        BenchCase("force feedback, 3-D", spatial, arm),
+        BenchCase("force feedback, 1-D, bounds", bounded, arm),
+        BenchCase("classical", ClassicalMpc(), arm),
+        BenchCase("torque feedback", TorqueFeedbackMpc(), arm),
+    ]
+
+
+def _timed(case: BenchCase, solves: int, pause: float, paused: int, yardstick: dict[str, float]) -> dict[str, Any]:
+    loop = NoisyLoop(case)
+    found: dict[str, Any] = {"node": _node_times(loop), "hot": _solve_times(loop, solves, 0.0)}
+    if paused:
+        found["paused"] = _solve_times(loop, paused, pause)
+    for part in ("hot", "paused"):
+        if part in found:
+            found[part]["in_yardsticks"] = found[part]["cpu"]["median"] / yardstick["median"]
+    return found
+
+
+class NoisyLoop:
+    """A robot that follows the solver's prediction, with sensor noise, round the polishing circle."""
+
+    def __init__(self, case: BenchCase) -> None:
+        self.problem: MpcProblem = problem_from_robot(case.robot, case.config)
+        self.chain = chain_from_robot(case.robot, case.config.frame)
+        self.model = kernel_model(self.problem)
+        self.solver = kernel_solver(self.problem, self.chain, self.model)
+        self.config, self.robot = case.config, case.robot
+        self._rng = np.random.default_rng(0)
+        self._home, self._R = case.robot.placement(case.robot.home, case.config.frame)
+        self._count = case.config.horizon + 1
+        self._time = 0.0
+        self.problem.write_constants(self.solver.nodes)
+        self.problem.write_phases(self.solver.nodes, (_PHASE,) * self._count)
+        self.solver.nodes.anchor_translation[...] = self._home
+        extra = self.solver.nx - 2 * case.robot.n
+        gravity = pin.computeGeneralizedGravity(case.robot.model, case.robot.model.createData(), case.robot.home)
+        start = gravity if case.config.kind == "torque_feedback" else np.full(extra, _FORCE)
+        self.x = np.concatenate([case.robot.home, np.zeros(case.robot.n), start[:extra]])
+        noise = {"force_feedback": 0.01, "torque_feedback": 0.02}.get(case.config.kind, 0.0)  # N, N·m
+        self._noise = np.concatenate([np.full(2 * case.robot.n, 1e-3), np.full(extra, noise)])
+        self.solver.quasi_static(self.x)
+
+    def next_state(self) -> Array:
+        """(nx,) what the sensors say one period later; references move on with it."""
+        self._time += _PERIOD
+        self.problem.write_references(self.solver.nodes, self._reference(), self.robot.home)
+        return self.x + self._noise * self._rng.normal(size=self.x.shape)
+
+    def follow(self, xs: Array) -> None:
+        """The robot moves as planned."""
+        share = _PERIOD / self.config.dt
+        self.x = xs[0] + share * (xs[1] - xs[0])
+
+    def _reference(self) -> HorizonReference:
+        times = self._time + self.config.dt * np.arange(self._count)
+        angle, zero = _SPEED * times, np.zeros(self._count)
+        offset = _RADIUS * np.stack([1.0 - np.cos(angle), -np.sin(angle), zero], axis=1)
+        speed = _RADIUS * _SPEED * np.stack([np.sin(angle), -np.cos(angle), zero, zero, zero, zero], axis=1)
+        wrench = np.tile([0.0, 0.0, _FORCE, 0.0, 0.0, 0.0], (self._count, 1))
+        turned = np.tile(self._R, (self._count, 1, 1))
+        return HorizonReference(self._home + offset, turned, speed, wrench, None, (_PHASE,) * self._count)
+
+
+def _solve_times(loop: NoisyLoop, solves: int, pause: float) -> dict[str, Any]:
+    """Times of `solves` solves after a tenth more to warm up."""
+    warm_up = max(solves // 10, 5)
+    cpu, wall, iterations, reached = np.empty(solves), np.empty(solves), np.empty(solves), 0
+    for k in range(-warm_up, solves):
+        x = loop.next_state()
+        loop.solver.shift()
+        if pause and k >= 0:
+            time.sleep(pause)
+        wall_start, cpu_start = time.perf_counter_ns(), time.thread_time_ns()
+        solution = loop.solver.solve(x, max_iterations=8, tolerance=1e-4)
+        cpu_end, wall_end = time.thread_time_ns(), time.perf_counter_ns()
+        loop.follow(solution.xs)
+        if k >= 0:
+            cpu[k], wall[k] = 1e-3 * (cpu_end - cpu_start), 1e-3 * (wall_end - wall_start)
+            iterations[k] = solution.iterations
+            reached += solution.kkt <= 1e-4
+    return {
+        "cpu": statistics(cpu),
+        "wall": statistics(wall),
+        "per_iteration": statistics(cpu / np.maximum(iterations, 1)),
+        "iterations": {"mean": float(iterations.mean()), "max": int(iterations.max())},
+        "kkt_reached": reached / solves,
+    }
+
+
+def _node_times(loop: NoisyLoop, repetitions: int = 2000) -> dict[str, float]:
+    """µs per evaluation of one running node, measured inside the extension."""
+    node = _mpc.Node(loop.chain, loop.model, loop.config.dt)
+    nodes = loop.solver.nodes
+    loop.next_state()
+    for name in ("state_weight", "translation_weight", "rotation_weight", "velocity_weight", "torque_gravity_weight"):
+        getattr(node.parameters, name)[0] = getattr(nodes, name)[0]
+    node.parameters.stiffness[0], node.parameters.damping[0] = nodes.stiffness[0], nodes.damping[0]
+    u = loop.solver.us[0]
+    return {
+        "calc": 1e6 * min(node.benchmark(loop.x, u, repetitions, derivatives=False) for _ in range(5)),
+        "calc_and_derivatives": 1e6 * min(node.benchmark(loop.x, u, repetitions) for _ in range(5)),
+    }
+
+
+def _bridge(case: BenchCase, solves: int) -> dict[str, Any]:
+    """The same problem solved by mim-solvers over the kernel's nodes, called from Python."""
+    try:
+        from mim_solvers import SolverSQP
+
+        from pliant.mpc.crocoddyl_bridge import shooting_problem
+    except (ImportError, MissingExtraError):
+        return {"missing": "pip install 'pliant[crocoddyl]'"}
+    loop = NoisyLoop(case)
+    cpu, iterations = np.empty(solves), np.empty(solves)
+    xs, us = loop.solver.xs, loop.solver.us
+    for k in range(solves):
+        x = loop.next_state()
+        sqp = SolverSQP(shooting_problem(loop.problem, loop.solver.nodes, x, loop.chain))
+        sqp.termination_tolerance, sqp.use_filter_line_search = 1e-4, True
+        start = time.thread_time_ns()
+        sqp.solve([x, *xs[1:]], list(us), 8, False, loop.config.regularisation)
+        cpu[k] = 1e-3 * (time.thread_time_ns() - start)
+        iterations[k] = sqp.iter
+        xs, us = np.array(sqp.xs.tolist()), np.array(sqp.us.tolist())
+        loop.follow(xs)
+        xs, us = np.vstack([xs[1:], xs[-1:]]), np.vstack([us[1:], us[-1:]])
+    what = "mim-solvers SQP, action models in Python over the kernel's nodes"
+    return {"what": what, "cpu": statistics(cpu), "iterations": {"mean": float(iterations.mean())}}
+
+
+def _growth(arm: Robot, solves: int) -> dict[str, list[dict[str, float]]]:
+    """CPU µs per iteration against the horizon's length, the number of joints and the contact's dimension."""
+    ff = ForceFeedbackMpc()
+    joints = [
+        arm.with_locked(dict.fromkeys(arm.joint_names[: arm.n - n], 0.0)) if n < arm.n else arm for n in range(3, 8)
+    ]
+    dimensions: Sequence[Any] = (1, 3, 6)
+
+    def point(x: float, config: MpcConfig, robot: Robot) -> dict[str, float]:
+        times = _solve_times(NoisyLoop(BenchCase("", config, robot)), solves, 0.0)
+        return {"x": x, "per_iteration": times["per_iteration"]["median"], "solve": times["cpu"]["median"]}
+
+    def of_dimension(m: int) -> MpcConfig:
+        moment = max(m - 3, 0)
+        stiffness, damping = (1e3,) * min(m, 3) + (5.0,) * moment, (1e2,) * min(m, 3) + (0.05,) * moment
+        contact = ff.contact.model_copy(update={"dimension": m, "stiffness": stiffness, "damping": damping})
+        return ff.model_copy(update={"contact": contact})
+
+    return {
+        "horizon": [point(N, ff.model_copy(update={"horizon": N}), arm) for N in (5, 10, 20, 50, 100)],
+        "joints": [point(robot.n, ff, robot) for robot in joints if robot.n <= arm.n],
+        "contact dimension": [point(m, of_dimension(m), arm) for m in dimensions],
+    }
+
+
+def _yardstick(arm: Robot, calls: int) -> dict[str, float]:
+    data = arm.model.createData()
+    q, v, tau = arm.home, np.full(arm.n, 0.1), np.full(arm.n, 1.0)
+    call: Callable[..., Any] = pin.computeABADerivatives
+    times = np.empty(calls)
+    for k in range(calls):
+        start = time.perf_counter_ns()
+        call(arm.model, data, q, v, tau)
+        times[k] = 1e-3 * (time.perf_counter_ns() - start)
+    return statistics(times)
+
+
+def statistics(times: Array) -> dict[str, float]:
+    """Median, 90th and 99th percentile and largest of times (k,)."""
+    median, p90, p99 = np.percentile(times, [50, 90, 99])
+    return {"median": float(median), "p90": float(p90), "p99": float(p99), "max": float(times.max())}
