@@ -60,5 +60,6 @@ class Stack:
             retune: (task, stiffness ‖ force_max ‖ range ‖ linear_range) for each tuning that changes now.
 
         Returns:
-            0, or what is not finite (then nothing was changed): 1 for q, 100 + i for frame i, 200 + i for its reference.
+            0, or what is not finite (then nothing was changed): 1 for q, 100 + i for frame i, 200 + i for its
+            reference.
         """

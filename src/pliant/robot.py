@@ -135,6 +135,16 @@ class Robot:
             raise RobotError(f"robot {self.name!r} has no joint {name!r}; {options(self.joint_names, name)}")
         return self.joint_names.index(name)
 
+    def carries(self, frame: str, other: str) -> bool:
+        """Whether `other` is `frame` itself or hangs on it: a sensor at `frame` feels what touches `other`."""
+        wanted, at = self.frame_id(frame), self.frame_id(other)
+        while at != wanted:
+            above = int(self.model.frames[at].parentFrame)
+            if above == at:
+                return False
+            at = above
+        return True
+
     def vector(self, value: npt.ArrayLike, what: str) -> Array:
         """Checks a joint vector.
 
@@ -224,7 +234,8 @@ class Robot:
         if tool.mass > 0.0:
             rod = pin.Inertia.FromCylinder(tool.mass, tool.radius, tool.length)
             model.appendBodyToJoint(carrier.parentJoint, rod, middle)
-        return replace(robot, model=model, visual=_with_rod(robot.visual, carrier, robot.frame_id(tool.parent), middle, tool))
+        visual = _with_rod(robot.visual, carrier, robot.frame_id(tool.parent), middle, tool)
+        return replace(robot, model=model, visual=visual)
 
     def _with_catalogue_data(self, rotor_inertia: float, home: tuple[float, ...], radii: Mapping[str, float]) -> Robot:
         self.model.armature = np.full(self.n, rotor_inertia)

@@ -183,6 +183,23 @@ def test_a_wrist_sensor_feels_the_tools_weight_in_its_own_axes(iiwa14: Robot) ->
     np.testing.assert_allclose(measurement.wrenches["flange"][3:], np.cross([0, 0, 0.1], weight), atol=1e-6)
 
 
+def test_a_sensor_feels_what_touches_beyond_it_and_nothing_else(leg3: Robot) -> None:
+    """A sensor at the knee's far side feels the foot's contact with its lever arm; one at the hip's body frame too."""
+    sensors = [ForceSensor("foot"), ForceSensor("shank"), ForceSensor("thigh")]
+    scene = Scene((floor(0.0, Surface(1e4, 4e2, friction=0.0)),))
+    plant = leg_plant(leg3, scene, sensors=sensors)
+    world, wrench = press(plant, 20.0)
+    readings, truth = plant._sensor_readings(world), plant.truth(world)
+    for frame in ("foot", "shank", "thigh"):
+        R = truth.rotations[frame]
+        np.testing.assert_allclose(R @ readings[frame][:3], wrench[:3], atol=1e-9)
+        lever = truth.positions["foot"] - truth.positions[frame]
+        np.testing.assert_allclose(R @ readings[frame][3:], wrench[3:] + np.cross(lever, wrench[:3]), atol=1e-9)
+    above = leg3.with_frame("above", "thigh").with_contact("above", 0.01)
+    assert above.carries("thigh", "above")
+    assert not above.carries("shank", "above")
+
+
 def test_half_the_physics_step_changes_little(leg3: Robot) -> None:
     scene = Scene((floor(0.0, Surface(1e4, 1e2, 0.3)),))
     coarse = press(leg_plant(leg3, scene, 5e-4), 30.0, 0.08)[0].data.qpos.copy()

@@ -105,6 +105,7 @@ class MujocoPlant(Plant[World]):
             if not isinstance(thing, Plane) and thing.mass > 0.0
         }
         self._contact_frames = {self.model.geom(geom).id: frame for geom, frame in self._parts.items()}
+        self._felt = {s: [f for f in self._parts.values() if robot.carries(s.frame, f)] for s in self.sensors}
 
     # ------------------------------------------------------------------ Plant
 
@@ -275,8 +276,12 @@ class MujocoPlant(Plant[World]):
         for sensor in self.sensors:
             site = self._sites[sensor.frame]
             R_world_sensor = data.site_xmat[site].reshape(3, 3)
-            wrench = np.array(world.wrenches.get(sensor.frame, np.zeros(6)))
-            reading = np.concatenate([R_world_sensor.T @ wrench[:3], R_world_sensor.T @ wrench[3:]])
+            force, moment = np.zeros(3), np.zeros(3)
+            for frame in self._felt[sensor]:
+                wrench, lever = world.wrenches[frame], data.site_xpos[self._sites[frame]] - data.site_xpos[site]
+                force += wrench[:3]
+                moment += wrench[3:] + np.cross(lever, wrench[:3])
+            reading = np.concatenate([R_world_sensor.T @ force, R_world_sensor.T @ moment])
             if sensor.mass > 0.0:
                 reading += self._carried(sensor, site, data)
             readings[sensor.frame] = reading
