@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import importlib
+import sys
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
-from pliant.errors import ConfigError
+from pliant.errors import ConfigError, MissingExtraError
 from pliant.mpc.config import Bounds, ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
 from pliant.mpc.nodes import copy_nodes
 from pliant.mpc.problem import problem_from_model
@@ -141,3 +143,10 @@ def test_friction_cone_is_refused() -> None:
     problem, _, solver = posed(polishing_arm(), settings, OFFSET, 0.0)
     with pytest.raises(ConfigError, match="no friction cone"):
         shooting_problem(problem, solver.nodes, np.zeros(15), constraints=True)
+
+
+def test_without_the_extra_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "crocoddyl", None)
+    monkeypatch.delitem(sys.modules, "pliant.mpc.crocoddyl_bridge")
+    with pytest.raises(MissingExtraError, match=r"pip install 'pliant\[crocoddyl\]'"):
+        importlib.import_module("pliant.mpc.crocoddyl_bridge")

@@ -47,4 +47,37 @@ def _controllers(console: Console) -> dict[str, Any]:
     return result
 
 
-_BENCHES: Mapping[str, Callable[[Console], dict[str, Any]]] = {"controllers": _controllers}
+def _mpc(console: Console) -> dict[str, Any]:
+    from pliant.mpc.benchmark import run
+
+    result = run()
+    title = f"predictive controllers, {result['robot']}, N = {result['horizon']}, {result['instruction_set']}"
+    table = Table(
+        "CPU µs",
+        "node",
+        "iteration",
+        "median",
+        "p90",
+        "p99",
+        "max",
+        "iterations",
+        "yardsticks",
+        title=title,
+        title_justify="left",
+    )
+    for name, case in result["cases"].items():
+        for label, part in ((name, "hot"), ("  after a pause of 2 ms", "paused")):
+            cpu = [f"{case[part]['cpu'][key]:.1f}" for key in ("median", "p90", "p99", "max")]
+            node = f"{case['node']['calc_and_derivatives']:.2f}" if part == "hot" else ""
+            iteration, count = case[part]["per_iteration"]["median"], case[part]["iterations"]["mean"]
+            table.add_row(label, node, f"{iteration:.1f}", *cpu, f"{count:.2f}", f"{case[part]['in_yardsticks']:.1f}")
+    console.print(table)
+    console.print(f"yardstick: {result['yardstick']['what']}, {result['yardstick']['median']:.1f} µs", highlight=False)
+    if "cpu" in result["bridge"]:
+        console.print(
+            f"beside it: {result['bridge']['what']}, {result['bridge']['cpu']['median']:.0f} µs", highlight=False
+        )
+    return result
+
+
+_BENCHES: Mapping[str, Callable[[Console], dict[str, Any]]] = {"controllers": _controllers, "mpc": _mpc}

@@ -36,6 +36,8 @@ class BenchCase:
     name: str
     config: MpcConfig
     robot: Robot
+    press: bool = False
+    """press on one spot with a force that swells, instead of drawing a circle: a contact in 3 or 6 dimensions sticks"""
 
 
 def run(
@@ -88,7 +90,8 @@ def _cases(arm: Robot) -> list[BenchCase]:
     bounded = ff.model_copy(update={"bounds": Bounds(torque=True, force_max=200.0)})
     return [
         BenchCase("force feedback, 1-D", ff, arm),
-        BenchCase("force feedback, 3-D", spatial, arm),
+        BenchCase("force feedback, 1-D, one spot", ff, arm, press=True),
+        BenchCase("force feedback, 3-D, one spot", spatial, arm, press=True),
         BenchCase("force feedback, 1-D, bounds", bounded, arm),
         BenchCase("classical", ClassicalMpc(), arm),
         BenchCase("torque feedback", TorqueFeedbackMpc(), arm),
@@ -114,7 +117,7 @@ class NoisyLoop:
         self.chain = chain_from_robot(case.robot, case.config.frame)
         self.model = kernel_model(self.problem)
         self.solver = kernel_solver(self.problem, self.chain, self.model)
-        self.config, self.robot = case.config, case.robot
+        self.config, self.robot, self._press = case.config, case.robot, case.press
         self._rng = np.random.default_rng(0)
         self._home, self._R = case.robot.placement(case.robot.home, case.config.frame)
         self._count = case.config.horizon + 1
@@ -124,7 +127,8 @@ class NoisyLoop:
         self.solver.nodes.anchor_translation[...] = self._home
         extra = self.solver.nx - 2 * case.robot.n
         gravity = pin.computeGeneralizedGravity(case.robot.model, case.robot.model.createData(), case.robot.home)
-        start = gravity if case.config.kind == "torque_feedback" else np.full(extra, _FORCE)
+        pressing = self.problem.in_contact_axes(np.array([0.0, 0.0, _FORCE, 0.0, 0.0, 0.0]), self._R)
+        start = gravity if case.config.kind == "torque_feedback" else pressing
         self.x = np.concatenate([case.robot.home, np.zeros(case.robot.n), start[:extra]])
         noise = {"force_feedback": 0.01, "torque_feedback": 0.02}.get(case.config.kind, 0.0)  # N, N·m
         self._noise = np.concatenate([np.full(2 * case.robot.n, 1e-3), np.full(extra, noise)])
@@ -144,9 +148,11 @@ class NoisyLoop:
     def _reference(self) -> HorizonReference:
         times = self._time + self.config.dt * np.arange(self._count)
         angle, zero = _SPEED * times, np.zeros(self._count)
-        offset = _RADIUS * np.stack([1.0 - np.cos(angle), -np.sin(angle), zero], axis=1)
-        speed = _RADIUS * _SPEED * np.stack([np.sin(angle), -np.cos(angle), zero, zero, zero, zero], axis=1)
-        wrench = np.tile([0.0, 0.0, _FORCE, 0.0, 0.0, 0.0], (self._count, 1))
+        R = 0.0 if self._press else _RADIUS
+        offset = R * np.stack([1.0 - np.cos(angle), -np.sin(angle), zero], axis=1)
+        speed = R * _SPEED * np.stack([np.sin(angle), -np.cos(angle), zero, zero, zero, zero], axis=1)
+        force = _FORCE + (10.0 * np.sin(angle) if self._press else zero)
+        wrench = np.stack([zero, zero, force, zero, zero, zero], axis=1)
         turned = np.tile(self._R, (self._count, 1, 1))
         return HorizonReference(self._home + offset, turned, speed, wrench, None, (_PHASE,) * self._count)
 
@@ -227,7 +233,7 @@ def _growth(arm: Robot, solves: int) -> dict[str, list[dict[str, float]]]:
     dimensions: Sequence[Any] = (1, 3, 6)
 
     def point(x: float, config: MpcConfig, robot: Robot) -> dict[str, float]:
-        times = _solve_times(NoisyLoop(BenchCase("", config, robot)), solves, 0.0)
+        times = _solve_times(NoisyLoop(BenchCase("", config, robot, press=True)), solves, 0.0)
         return {"x": x, "per_iteration": times["per_iteration"]["median"], "solve": times["cpu"]["median"]}
 
     def of_dimension(m: int) -> MpcConfig:
