@@ -1,7 +1,7 @@
 """Load a robot, look at it, and ask pinocchio and MuJoCo the same question.
 
-A robot is a catalogue name (`pliant list robots`) or the path of a URDF or MJCF file. Everything that computes makes its own
-data from `robot.model`, so one robot can serve many threads.
+A robot is a catalogue name (`pliant list robots`) or the path of a URDF or MJCF file. Everything that computes makes
+its own data from `robot.model`, so one robot can serve many threads.
 """
 
 import mujoco

@@ -175,3 +175,14 @@ CONTINUOUS_URDF = """
   <joint name="axle" type="continuous"><parent link="base"/><child link="rim"/><axis xyz="0 0 1"/></joint>
 </robot>
 """
+
+
+def test_joints_can_be_locked_behind_a_tool(iiwa14: Robot) -> None:
+    """Every shape, the tool's too, names the frame that carries it; locking looks that frame up."""
+    arm = iiwa14.with_tool(Tool())
+    assert arm.visual is not None
+    for shape in arm.visual.geometryObjects:
+        assert shape.parentFrame < arm.model.nframes
+    locked = arm.with_locked({"A1": 0.0})
+    q = np.linspace(-0.3, 0.4, 6)
+    np.testing.assert_allclose(locked.placement(q, "tool")[0], arm.placement([0.0, *q], "tool")[0], atol=1e-12)
