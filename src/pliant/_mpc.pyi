@@ -264,7 +264,9 @@ class Solver:
             regularisation: added to the diagonals of L_xx and L_uu (raised by itself when the recursion breaks down).
             filter_size: past (cost, infeasibility) pairs the line search compares with.
             line_search_steps: halvings tried per iteration.
-            bounds: treat torque, force and cone bounds of `nodes` (else they are ignored, and cost nothing).
+            bounds: treat torque, force and cone bounds of `nodes` (else they are ignored, and cost nothing). Forces are
+                bounded wherever they can be chosen: in force feedback at nodes 1 to N, with the classical model at
+                nodes 0 to N − 1, with the others at nodes 1 to N − 1.
         """
     @property
     def nodes(self) -> Nodes:
@@ -292,7 +294,10 @@ class Solver:
     def reset(self) -> None:
         """Forget multipliers of bounds (plan and nodes stay)."""
     def quasi_static(self, x0: ArrayLike) -> None:
-        """Set the plan to rest at x0: every state x0, every control g(q) − Jᵀλ."""
+        """Set the plan to rest at x0: every state x0, every control g(q) − Jᵀλ (λ of a force-feedback state, else 0).
+
+        In torque feedback the torques of the planned states become g(q) too.
+        """
     def solve(
         self,
         x0: ArrayLike,

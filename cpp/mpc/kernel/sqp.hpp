@@ -2,67 +2,17 @@
 // Mansard and Righetti, "Stagewise implementations of sequential quadratic programming for model-predictive control"
 // (2023). All memory is taken at construction.
 #pragma once
-#include <stddef.h>
 #include <new>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
+#include "array.hpp"
 #include "bounds.hpp"
 #include "force_feedback.hpp"
 #include "output_force.hpp"
 #include "rest.hpp"
 #include "riccati.hpp"
+#include "state_map.hpp"
 
 namespace pliant::mpc::PLIANT_ISA {
-
-inline double now_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
-// An array of T in memory aligned for the widest vectors; lives as long as its owner.
-template <class T> struct Array {
-    T *data = nullptr;
-    int count = 0;
-
-    Array() = default;
-    Array(const Array &) = delete;
-    Array &operator=(const Array &) = delete;
-    ~Array() { free(data); }
-    bool allocate(int n) {
-        count = n;
-        data = static_cast<T *>(aligned_alloc(64, (sizeof(T) * size_t(n) + 63) / 64 * 64));
-        if (data) memset(static_cast<void *>(data), 0, sizeof(T) * size_t(n));
-        return data != nullptr;
-    }
-    T &operator[](int i) { return data[i]; }
-    const T &operator[](int i) const { return data[i]; }
-};
-
-// Positions, velocities and extra part of a dense state, and the lanes they live in.
-template <class L> struct StateMap {
-    int dof, extra;
-    int dim() const { return 2 * dof + extra; }
-    int lane(int i) const {
-        if (i < dof) return i;
-        if (i < 2 * dof) return 8 + i - dof;
-        return L::has_torque ? 16 + i - 2 * dof : L::force_lane(i - 2 * dof);
-    }
-    Row<L> pack(const double *x) const {
-        Row<L> r = zero_row<L>();
-        for (int i = 0; i < dim(); ++i) r.set(lane(i), x[i]);
-        return r;
-    }
-    void unpack(const Row<L> &r, double *x) const {
-        for (int i = 0; i < dim(); ++i) x[i] = r[lane(i)];
-    }
-};
-
-template <class L> PLIANT_INLINE bool finite(const Row<L> &r) {
-    return isfinite(sum_magnitude(r));
-}
 
 // A trajectory with its expansions: the current iterate, or a trial of the line search.
 template <class L> struct Iterate {
@@ -149,7 +99,7 @@ template <class L> class Solver {
     bool newton_step(Report &report);
     void bounded_values(const Iterate<L> &it, int k, Lanes &torque, double *force) const;
     double model_error(const Iterate<L> &it);
-    double update_multipliers(const Iterate<L> &it);
+    double update_multipliers();
     bool bounded_step(double tolerance, Report &report);
     double optimality(const Iterate<L> &it) const;
     bool line_search(int iteration, Report &report);
@@ -242,14 +192,13 @@ template <class L> double Solver<L>::model_error(const Iterate<L> &it) {
 }
 
 // y ← gradient of the terms; returns the primal-dual residual ‖z − Π_C(z + y/ρ)‖ that the old y left.
-template <class L> double Solver<L>::update_multipliers(const Iterate<L> &it) {
+template <class L> double Solver<L>::update_multipliers() {
     double worst = 0;
     for (int k = 0; k <= options.horizon; ++k) {
         worst = larger(worst, largest_difference(bounds[k], multipliers[k], terms[k].gradient) / penalty);
         multipliers[k] = terms[k].gradient;
         bound_terms(bounds[k], multipliers[k], terms[k].torque_at, terms[k].force_at, terms[k]);
     }
-    (void)it;
     return worst;
 }
 
@@ -268,7 +217,7 @@ template <class L> bool Solver<L>::bounded_step(double tolerance, Report &report
             bounded_expansion(bounds[k], terms[k], it.node[k], k < N ? it.u[k] : zero(), expansions[k]);
         if (!newton_step(report)) return false;
         if (model_error(it) > tolerance) continue;      // the active set moved
-        if (update_multipliers(it) <= tolerance) break; // nothing left to move
+        if (update_multipliers() <= tolerance) break; // nothing left to move
     }
     return true;
 }
