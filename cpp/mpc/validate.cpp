@@ -49,6 +49,14 @@ struct NodeCheck {
             if (!(v[i] > 0) || !std::isfinite(v[i]))
                 reject(name, " of a contact must be positive, but node ", index, " has ", v[i], " at component ", i);
     }
+    // Explicit Euler of ẍ = W λ, λ̇ = −K ẋ − B ẍ has determinant 1 − dt B W + dt² K W: below 1 only for K dt < B.
+    void explicit_step(const NodeData &d, int count, double dt) const {
+        for (int i = 0; i < count; ++i)
+            if (!(d.stiffness[i] * dt < d.damping[i]))
+                reject("with the Euler integrator stiffness · dt must stay below damping, but node ", index, " has ",
+                       d.stiffness[i], " · ", dt, " against ", d.damping[i], " at component ", i,
+                       ": use integrator 'exponential', or a shorter step");
+    }
     void interval(const char *name, const double *lower, const double *upper, int count) const {
         for (int i = 0; i < count; ++i)
             if (!(lower[i] <= upper[i]))
@@ -86,7 +94,7 @@ void validate(const ModelData &m) {
     if (!(m.baumgarte_position >= 0) || !(m.baumgarte_velocity >= 0)) reject("baumgarte gains must not be negative");
 }
 
-void validate(const NodeData &d, int index, int dof, const ModelData &model) {
+void validate(const NodeData &d, int index, int dof, const ModelData &model, double dt) {
     const NodeCheck check{index};
     check.weights("state_weight", d.state_weight, 2 * dof);
     check.weights("control_weight", d.control_weight, dof);
@@ -112,6 +120,7 @@ void validate(const NodeData &d, int index, int dof, const ModelData &model) {
         check.positive("stiffness", d.stiffness, m);
         check.positive("damping", d.damping, m);
     }
+    if (model.kind == Kind::force_feedback && model.integrator == Integrator::euler) check.explicit_step(d, m, dt);
     check.references("anchor_translation", d.anchor_translation, 3);
     if (m == 6) check.rotation("anchor_rotation", d.anchor_rotation);
 }

@@ -147,7 +147,7 @@ class Nodes:
     force_reference: NDArray[np.float64]  # (M, m) [N, N·m] contact axes
     force_weight: NDArray[np.float64]  # (M, m)
     force_rate_weight: NDArray[np.float64]  # (M, m) on λ̇, force feedback only
-    stiffness: NDArray[np.float64]  # (M, m) K [N/m, N·m/rad]
+    stiffness: NDArray[np.float64]  # (M, m) K [N/m, N·m/rad]; with the Euler integrator K dt < B
     damping: NDArray[np.float64]  # (M, m) B [N·s/m, N·m·s/rad]
     anchor_translation: NDArray[
         np.float64

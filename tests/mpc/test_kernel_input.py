@@ -62,6 +62,7 @@ def test_construction(message: str, make: Callable[[], object]) -> None:
         ("translation_weight", -1.0, r"translation_weight must be finite and not negative, but node 0 has -1"),
         ("force_weight", np.nan, r"force_weight must be finite and not negative"),
         ("stiffness", 0.0, r"stiffness of a contact must be positive, but node 0 has 0"),
+        ("stiffness", 1e5, r"stiffness · dt must stay below damping, but node 0 has 100000 · 0.003 against 100"),
         ("damping", -2.0, r"damping of a contact must be positive"),
         ("rotation_reference", 0.0, r"rotation_reference must be a rotation matrix"),
         ("torque_lower", 5.0, r"torque_lower must not exceed torque_upper"),
@@ -88,6 +89,8 @@ def test_shapes() -> None:
     solver, x0 = polishing(random_chain(7, 1))
     with pytest.raises(ValueError, match=r"x0 must have shape \(15,\), got \(14,\)"):
         solver.solve(x0[:-1])
+    with pytest.raises(ValueError, match="us must be finite"):
+        solver.solve(x0, us=np.full((5, 7), np.nan))
     with pytest.raises(ValueError, match="broadcast"):
         solver.nodes.force_reference = np.zeros((3, 3))
 

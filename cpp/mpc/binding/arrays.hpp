@@ -3,6 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,11 @@ inline void read(nb::handle value, const char *name, const std::vector<size_t> &
     if (got != shape)
         throw std::invalid_argument(std::string(name) + " must have shape " + shape_text(shape) + ", got " + shape_text(got));
     std::memcpy(out, a.data(), a.size() * sizeof(double));
+}
+
+inline void require_finite(const char *name, const std::vector<double> &values) {
+    for (double v : values)
+        if (!std::isfinite(v)) throw std::invalid_argument(std::string(name) + " must be finite");
 }
 
 using Output = nb::ndarray<nb::numpy, double>;

@@ -15,18 +15,19 @@ struct PyNode {
     EngineHandle handle;
     nb::object nodes;
     size_t n, m, nx;
+    double dt;
     bool terminal;
 
     static Options options(double dt) { return {1, dt, 0, 1, 1, false}; }
-    PyNode(const PyChain &chain, const PyModel &model, double dt, bool terminal_)
-        : handle(chain.data, model.data, options(dt)),
+    PyNode(const PyChain &chain, const PyModel &model, double step, bool terminal_)
+        : handle(chain.data, model.data, options(step)),
           nodes(nb::cast(new PyNodes(1, chain.data.dof, model.data), nb::rv_policy::take_ownership)),
           n(size_t(chain.data.dof)), m(size_t(model.data.contact_dim)), nx(size_t(state_dim(model.data, chain.data.dof))),
-          terminal(terminal_) {}
+          dt(step), terminal(terminal_) {}
 
     const NodeData &data() const {
         const PyNodes &p = nb::cast<const PyNodes &>(nodes);
-        p.check();
+        p.check(dt);
         return p.data[0];
     }
     NodeResult evaluate(nb::handle x, nb::handle u, bool derivatives) const {

@@ -31,8 +31,8 @@ struct PyNodes {
             d.contact_active = m.contact_dim > 0;
         }
     }
-    void check() const {
-        for (size_t k = 0; k < data.size(); ++k) validate(data[k], int(k), dof, model);
+    void check(double dt) const {
+        for (size_t k = 0; k < data.size(); ++k) validate(data[k], int(k), dof, model, dt);
     }
     void copy_node(int source, int target) {
         const int count = int(data.size());

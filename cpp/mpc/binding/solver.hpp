@@ -26,17 +26,19 @@ struct PySolver {
 
     const NodeData *data() const {
         const PyNodes &p = nb::cast<const PyNodes &>(nodes);
-        p.check();
+        p.check(dt);
         return p.data.data();
     }
     void set_xs(nb::handle xs) const {
         std::vector<double> v((N + 1) * nx);
         read(xs, "xs", {N + 1, nx}, v.data());
+        require_finite("xs", v);
         handle.table->set_plan(handle.engine, v.data(), nullptr);
     }
     void set_us(nb::handle us) const {
         std::vector<double> v(N * n);
         read(us, "us", {N, n}, v.data());
+        require_finite("us", v);
         handle.table->set_plan(handle.engine, nullptr, v.data());
     }
     void quasi_static(nb::handle x0) const {

@@ -129,7 +129,7 @@ void solve_repeatedly(int dof, const ModelData &m, bool bounded, const char *nam
     std::vector<NodeData> nodes(N + 1, parameters(dof, home, bounded));
     validate(chain);
     validate(m);
-    validate(nodes[0], 0, dof, m);
+    validate(nodes[0], 0, dof, m, 3e-3);
     const KernelTable &k = kernel(dof, m);
     const int before_construction = allocations;
     Engine *engine = k.create(chain, m, {N, 3e-3, 1e-9, 8, 10, bounded});
