@@ -8,9 +8,9 @@ import pinocchio as pin
 from pliant import _mpc
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.config import Contact, MpcConfig
-from pliant.mpc.controller import kernel_model, kernel_solver
 from pliant.mpc.costs import Costs, Phase, Term
 from pliant.mpc.horizon import HorizonReference
+from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.nodes import NodeParameters
 from pliant.mpc.problem import MpcProblem, problem_from_robot
 from pliant.robot import Robot, Tool

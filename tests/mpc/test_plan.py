@@ -38,7 +38,8 @@ def _solution(**changes: Any) -> Any:
         ({"status": "nan"}, False),
         ({"status": "not_positive_definite"}, False),
         ({"us": np.full((5, 6), np.nan)}, False),
-        ({"gap": 1.0}, False),
+        ({"gap": 1.0}, True),
+        ({"gap": 100.0}, False),
         ({"gap": np.nan}, False),
     ],
 )

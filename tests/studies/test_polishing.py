@@ -57,6 +57,13 @@ def test_contact_is_found_without_a_timetable() -> None:
     assert found["E_λ"].value == pytest.approx(scheduled["E_λ"].value, rel=0.2)
 
 
+def test_one_iteration_per_solve_tracks_as_well_as_eight() -> None:
+    result = run_case(STUDY, _config(control={"max_iterations": 1}))
+    found = {metric.name: metric.value for metric in result.metrics}
+    assert found["E_λ"] == pytest.approx(_ideal("force-feedback-mpc")["E_λ"].value, rel=0.05)
+    assert found["iterations"] <= 1.0
+
+
 def test_half_the_physics_step_changes_little() -> None:
     coarse, fine = (_ideal("force-feedback-mpc", step=step) for step in (5e-4, 2.5e-4))
     for name in ("E_λ", "E_P"):

@@ -18,8 +18,8 @@ from pliant import _mpc
 from pliant.errors import MissingExtraError
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.config import Bounds, ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
-from pliant.mpc.controller import kernel_model, kernel_solver
 from pliant.mpc.horizon import HorizonReference
+from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.problem import MpcProblem, problem_from_robot
 from pliant.robot import Robot, Tool
 from pliant.spatial import Array

@@ -95,7 +95,9 @@ class MpcConfig(ControllerConfig):
     fallback_damping: float = Field(
         default=5.0, ge=0.0, description="joint damping when no plan is left", json_schema_extra={"unit": "N·m·s/rad"}
     )
-    max_gap: float = Field(default=1e-2, gt=0.0, description="a solution whose dynamics are open by more is not used")
+    max_gap: float = Field(
+        default=10.0, gt=0.0, description="Σ|f(x, u) − x⁺| over states and nodes above which a solution is not used"
+    )
     bounds: Bounds = Bounds()
     costs: Costs = Costs()
     phases: dict[str, Phase] = Field(

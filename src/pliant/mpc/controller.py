@@ -15,7 +15,7 @@ from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.horizon import HorizonReference, along_horizon
-from pliant.mpc.nodes import NodeParameters
+from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.plan import Plan, SafeTorque, plan_of, torque_from, usable
 from pliant.mpc.problem import MpcProblem, problem_from_robot
 from pliant.robot import Robot
@@ -192,31 +192,3 @@ class MpcController(Controller[MpcState]):
             if torque is not None and all_finite(torque):
                 return torque, "old plan" if state.failures else "plan"
         return self._safe.at(state.data, state.q, state.v), "gravity and damping"
-
-
-def kernel_model(problem: MpcProblem) -> _mpc.Model:
-    """The compiled model of a problem."""
-    contact = problem.config.contact
-    surface = problem.R_world_surface if contact.axes == "surface" else None
-    return _mpc.Model(
-        problem.config.kind,
-        problem.m,
-        contact.axes,
-        surface_rotation=surface,
-        torque_bandwidth=problem.config.torque_bandwidth,
-        baumgarte=contact.baumgarte,
-        integrator=contact.integrator,
-    )
-
-
-def kernel_solver(problem: MpcProblem, chain: _mpc.Chain, model: _mpc.Model) -> _mpc.Solver:
-    """A compiled solver of a problem; its nodes have neither weights nor references yet."""
-    config = problem.config
-    return _mpc.Solver(
-        chain, model, config.horizon, config.dt, regularisation=config.regularisation, bounds=config.bounds.any
-    )
-
-
-def nodes_of(solver: _mpc.Solver) -> NodeParameters:
-    """The solver's nodes as the protocol that problems write to."""
-    return solver.nodes

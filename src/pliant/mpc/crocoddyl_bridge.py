@@ -7,20 +7,22 @@ opinion. Models run in Python: leave the number of threads of a shooting problem
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
 
 import numpy as np
+import pinocchio as pin  # before crocoddyl, which needs its converters
 
 from pliant import _mpc
 from pliant.errors import ConfigError, MissingExtraError
+from pliant.mpc.kernel import kernel_model
 from pliant.mpc.nodes import NodeParameters, copy_nodes
 from pliant.mpc.pinocchio_node import NodeValues, PinocchioNode
 from pliant.mpc.problem import MpcProblem
 from pliant.spatial import Array
 
 try:
-    import pinocchio as pin  # before crocoddyl, which needs its converters
-    from crocoddyl import ActionModelAbstract, ShootingProblem, StateAbstract, StateVector
+    crocoddyl: Any = importlib.import_module("crocoddyl")
 except ImportError as error:
     raise MissingExtraError("the bridge needs crocoddyl and mim-solvers: pip install 'pliant[crocoddyl]'") from error
 
@@ -54,16 +56,14 @@ def shooting_problem(
         )
         copy_nodes(nodes, node.parameters, slice(index, index + 1))
         actions.append(NodeAction(problem, node, terminal=terminal, constrained=constraints))
-    return ShootingProblem(np.array(x0), actions[:-1], actions[-1])
+    return crocoddyl.ShootingProblem(np.array(x0), actions[:-1], actions[-1])
 
 
 def _kernel_node(problem: MpcProblem, chain: _mpc.Chain, terminal: bool) -> _mpc.Node:
-    from pliant.mpc.controller import kernel_model
-
     return _mpc.Node(chain, kernel_model(problem), problem.config.dt, terminal=terminal)
 
 
-class NodeAction(ActionModelAbstract):  # type: ignore[misc]
+class NodeAction(crocoddyl.ActionModelAbstract):
     """One node of the kernel or of pinocchio as a crocoddyl action model."""
 
     def __init__(
@@ -72,7 +72,9 @@ class NodeAction(ActionModelAbstract):  # type: ignore[misc]
         self.node, self.terminal = node, terminal
         self._bounds = _Bounds(problem, node, terminal) if constrained else None
         ng = self._bounds.count if self._bounds else 0
-        ActionModelAbstract.__init__(self, _state(problem, node), problem.nu, 1, ng, 0, ng if terminal else 0, 0)
+        crocoddyl.ActionModelAbstract.__init__(
+            self, _state(problem, node), problem.nu, 1, ng, 0, ng if terminal else 0, 0
+        )
         if self._bounds:
             self.g_lb, self.g_ub = self._bounds.lower, self._bounds.upper
         self._no_control = np.zeros(problem.nu)
@@ -125,16 +127,16 @@ class _Bounds:
 
 
 def _state(problem: MpcProblem, node: _mpc.Node | PinocchioNode) -> Any:
-    return StateVector(node.nx) if problem.model.nq == problem.model.nv else ManifoldState(problem, node.nx)
+    return crocoddyl.StateVector(node.nx) if problem.model.nq == problem.model.nv else ManifoldState(problem, node.nx)
 
 
-class ManifoldState(StateAbstract):  # type: ignore[misc]
+class ManifoldState(crocoddyl.StateAbstract):
     """State (q, v, e) of a robot with a free base: q moves on its group, v and e are vectors."""
 
     def __init__(self, problem: MpcProblem, nx: int) -> None:
         self._model = problem.model
         self._nq, self._nv = self._model.nq, self._model.nv
-        StateAbstract.__init__(self, nx, nx - self._nq + self._nv)
+        crocoddyl.StateAbstract.__init__(self, nx, nx - self._nq + self._nv)
 
     def zero(self) -> Array:
         return np.concatenate([pin.neutral(self._model), np.zeros(self.nx - self._nq)])

@@ -136,9 +136,7 @@ class Polishing(Study[PolishingConfig]):
     title = "press on a table and draw a circle: classical, torque-feedback and force-feedback MPC"
     cases = MappingProxyType({"ideal": PolishingConfig(case="ideal")})
 
-    @property
-    def controllers(self) -> Sequence[str]:
-        return tuple(CONTROLLERS)
+    controllers = tuple(CONTROLLERS)
 
     def runs(self, case: str, seeds: int | None = None) -> Sequence[PolishingConfig]:
         tuned = [self.case(case).model_copy(update={"controller": name}) for name in CONTROLLERS]
