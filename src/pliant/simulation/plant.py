@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
@@ -38,6 +38,8 @@ class World:
     """frames and robot parts that touched something in the last physics step"""
     contacts: ContactState | None = None
     """of the explicit contact law"""
+    pushes: list[Push] = field(default_factory=list[Push])
+    """more disturbances than the plant was built with; may be changed between two steps"""
 
 
 class MujocoPlant(Plant[World]):
@@ -112,7 +114,16 @@ class MujocoPlant(Plant[World]):
     def init(self) -> tuple[Measurement, World]:
         data = mujoco.MjData(self.model)
         data.qpos[: self.robot.n] = self.start
-        world = World(data, 0, {frame: np.zeros(6) for frame in self._contact_frames.values()}, frozenset())
+        return self._started(World(data, 0, self._no_wrenches(), frozenset()))
+
+    def resume(self, world: World) -> tuple[Measurement, World]:
+        """Goes on where a plant of the same robot and the same things stopped, for example one with another table."""
+        data = mujoco.MjData(self.model)
+        data.qpos[:], data.qvel[:], data.time = world.data.qpos, world.data.qvel, world.data.time
+        return self._started(World(data, world.ticks, self._no_wrenches(), frozenset(), pushes=world.pushes))
+
+    def _started(self, world: World) -> tuple[Measurement, World]:
+        data = world.data
         mujoco.mj_step1(self.model, data)
         self._apply(world, np.zeros(self.robot.n))  # what the robot compensates by itself, before the first command
         mujoco.mj_forward(self.model, data)
@@ -159,21 +170,20 @@ class MujocoPlant(Plant[World]):
 
     def _step_explicit(self, world: World, torque: Array, contacts: ExplicitContacts) -> None:
         assert world.contacts is not None
-        for steps in _shares(self.substeps, 4 if self._follows_state else 1):
+        for steps in _shares(self.substeps, 4 if self._follows_state(world) else 1):
             self._apply(world, torque)
             contacts.advance(world.contacts, steps)
             mujoco.mj_step1(self.model, world.data)
         contacts.refresh(world.contacts)
         self._read_explicit(world, contacts)
 
-    @property
-    def _follows_state(self) -> bool:
+    def _follows_state(self, world: World) -> bool:
         """Whether something besides the held torque changes within a period."""
-        return bool(self.pushes) or self.joints.compensation == "gravity+coriolis"
+        return bool(self.pushes or world.pushes) or self.joints.compensation == "gravity+coriolis"
 
     def _read_explicit(self, world: World, contacts: ExplicitContacts) -> None:
         assert world.contacts is not None
-        world.wrenches = {frame: np.zeros(6) for frame in self._contact_frames.values()}
+        world.wrenches = self._no_wrenches()
         touching: set[str] = set()
         for index, pair in enumerate(contacts.pairs):
             frame = self._parts.get(pair.geom_a)
@@ -182,6 +192,9 @@ class MujocoPlant(Plant[World]):
                 world.wrenches[frame] += contacts.wrench(world.contacts, index, about)
                 touching.add(frame)
         world.touching = frozenset(touching)
+
+    def _no_wrenches(self) -> dict[str, Array]:
+        return {frame: np.zeros(6) for frame in self._contact_frames.values()}
 
     def _compile(self, physics_step: float, pairs: Sequence[PairOfGeoms]) -> mujoco.MjModel:
         spec = spec_from_robot(self.robot)
@@ -233,9 +246,9 @@ class MujocoPlant(Plant[World]):
         data.qfrc_applied[:n] = torque
         if self.joints.compensation == "gravity+coriolis":
             data.qfrc_applied[:n] += data.qfrc_bias[:n]
-        for push in self.pushes:
+        for push in (*self.pushes, *world.pushes):
             if push.at(data.time):
-                site = self._sites[push.frame]
+                site = self.model.site(push.frame).id
                 body = int(self.model.site_bodyid[site])
                 force = np.array(push.force)
                 mujoco.mj_applyFT(self.model, data, force, np.zeros(3), data.site_xpos[site], body, data.qfrc_applied)
@@ -243,7 +256,7 @@ class MujocoPlant(Plant[World]):
     def _read_contacts(self, world: World) -> None:
         """Sums the contact forces on every contact frame."""
         data = world.data
-        world.wrenches = {frame: np.zeros(6) for frame in self._contact_frames.values()}
+        world.wrenches = self._no_wrenches()
         touching: set[str] = set()
         local = np.zeros(6)
         for index in range(data.ncon):
