@@ -1,4 +1,4 @@
-"""The command line: `pliant run`, `study`, `log`, `bench`, `list`, `doctor`."""
+"""The command line: `pliant run`, `study`, `live`, `log`, `bench`, `list`, `doctor`."""
 
 from __future__ import annotations
 
@@ -78,12 +78,13 @@ def run(
     seed: Seed = None,
     out: Out = None,
     set_: Sets = None,
+    live: Annotated[bool, typer.Option("--live", help="Opens a page beside the run, which then follows wall time.")] = False,
 ) -> None:
     """Runs one case: a table, figures, a log and summary.json."""
     from pliant.cli.run import run_command
 
     overrides = {"controller": controller, "robot": robot, "seed": seed}
-    run_command(_out, _err, target, case, overrides, set_ or [], out)
+    run_command(_out, _err, target, case, overrides, set_ or [], out, live)
 
 
 @app.command()
@@ -105,6 +106,26 @@ def study(
     from pliant.cli.study import study_command
 
     study_command(_out, _err, name, case or [], seeds, jobs, logs, set_ or [], out)
+
+
+@app.command()
+@_guarded
+def live(
+    target: Annotated[str, typer.Argument(metavar="[STUDY|CONFIG.toml|FILE.mcap]", help="What to run, or a log to replay.")] = "stack",
+    case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
+    controller: Controller = None,
+    robot: RobotOption = None,
+    seed: Seed = None,
+    host: Annotated[str, typer.Option(help="Address to listen at. Any but the default lets other machines in, with a token.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free one.")] = 8080,
+    out: Out = None,
+    set_: Sets = None,
+) -> None:
+    """Opens a page in the browser: the robot moves, every parameter can be turned, every link pushed."""
+    from pliant.cli.live import live_command
+
+    overrides = {"controller": controller, "robot": robot, "seed": seed}
+    live_command(_out, _err, target, case, overrides, set_ or [], host, port, out)
 
 
 @app.command()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from rich.console import Console
 from pliant.cli.progress import progress_bar
 from pliant.cli.report import print_results, save_summary
 from pliant.errors import ConfigError, RunFailedError, options
-from pliant.studies.base import CaseConfig, Study
+from pliant.studies.base import CaseConfig, Experiment, Study
 from pliant.studies.config import merged, parse_assignments, read_toml
 from pliant.studies.registry import get_study, study_names
 from pliant.studies.runner import run_case
@@ -26,8 +27,9 @@ def run_command(
     overrides: Mapping[str, Any],
     assignments: Sequence[str],
     out: Path | None,
+    live: bool = False,
 ) -> None:
-    """Runs one case.
+    """Runs one case. Args: live: with a page that shows and steers it, paced to wall time.
 
     Raises:
         PliantError: bad input; nothing was run.
@@ -38,8 +40,11 @@ def run_command(
     experiment = study.build(config)
     for warning in experiment.warnings:
         complain.print(f"warning: {warning}", style="yellow", markup=False, highlight=False, soft_wrap=True)
-    with progress_bar(complain, f"{study.name} {config.case} · {config.controller}") as progress:
-        result = run_case(study, config, folder, progress=progress, experiment=experiment)
+    with (
+        _page(console, complain, study, config, experiment, folder, live) as more,
+        progress_bar(complain, f"{study.name} {config.case} · {config.controller}") as progress,
+    ):
+        result = run_case(study, config, folder, progress=progress, **more)
     summary = save_summary(study, [result], folder)
     if result.failure is not None:
         raise RunFailedError(f"{result.failure}; the log until then is {result.log}")
@@ -47,6 +52,32 @@ def run_command(
     console.print(f"\nlog      {result.log}\nsummary  {summary}", markup=False, highlight=False, soft_wrap=True)
     for figure in result.figures:
         console.print(f"figure   {figure}", markup=False, highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def _page(
+    console: Console,
+    complain: Console,
+    study: Study[Any],
+    config: CaseConfig,
+    experiment: Experiment,
+    folder: Path,
+    live: bool,
+) -> Iterator[dict[str, Any]]:
+    """What `run_case` gets beside the run itself: with a page, a loop that the page can follow and steer."""
+    if not live:
+        yield {"experiment": experiment}
+        return
+    from pliant.cli.live import DEFAULT_HOST, announce, require_viser
+
+    require_viser()
+    from pliant.live.beside import beside
+
+    def tell(url: str, guarded: bool) -> None:
+        announce(console, complain, url, guarded)
+
+    with beside(study, config, experiment, DEFAULT_HOST, 0, folder, tell) as page:
+        yield {"experiment": page.experiment, "observers": page.observers, "pace": page.pace}
 
 
 def resolve(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,7 @@ def run_case(
     observers: Sequence[Observer] = (),
     figures: bool = True,
     experiment: Experiment | None = None,
+    pace: Callable[[Iterable[object]], Iterable[object]] = iter,
 ) -> Result:
     """Runs a configuration to its end, or to the failure that stops it; what was recorded until then is kept.
 
@@ -40,6 +41,7 @@ def run_case(
         observers: more watchers of the loop.
         figures: whether to draw.
         experiment: the wired loop, if the caller already built it.
+        pace: makes a clock of the periods to run, for example one that follows wall time.
 
     Returns:
         Metrics, failure and files. KeyboardInterrupt passes through after the log was closed.
@@ -54,7 +56,7 @@ def run_case(
     if progress is not None:
         watchers.append(_Reporter(progress, ticks))
     with recorder:
-        outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, range(ticks), watchers)
+        outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), watchers)
         recorder.close(outcome.failure)
     log = recorder.log()
     return _measured(study, config, wired, log, outcome.failure, folder if figures else None)

@@ -1,0 +1,123 @@
+"""A page, its loop, and a real browser without a screen."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("viser", reason="the live page is not installed (pliant[live])")
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+from playwright.sync_api import Browser, Page as Tab  # noqa: E402
+
+from pliant.live.launch import live_page  # noqa: E402
+from pliant.live.page import Page  # noqa: E402
+from pliant.live.server import PageServer  # noqa: E402
+from pliant.studies.base import CaseConfig  # noqa: E402
+from pliant.studies.config import merged  # noqa: E402
+from pliant.studies.registry import get_study  # noqa: E402
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+_FLAGS = [
+    "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+]  # fmt: skip
+PATIENCE = 40.0  # s: other work may share the machine
+
+
+def until(holds: Callable[[], object], what: str, seconds: float = PATIENCE) -> None:
+    """Waits until something holds."""
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end, f"{what} did not happen within {seconds:g} s"
+        time.sleep(0.02)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    if CHROMIUM is None:
+        pytest.skip("chromium is not installed")
+    with playwright.sync_playwright() as driver:
+        started = driver.chromium.launch(executable_path=CHROMIUM, headless=True, args=_FLAGS)
+        yield started
+        started.close()
+
+
+def wall_case() -> CaseConfig:
+    """The arm holds its tool beside a wall, without joint friction: forces are what the controller says."""
+    study = get_study("stack")
+    changes = {"path": {"kind": "hold", "ramp": 0.0}, "duration": 25.0, "joints": {"friction": 0.0}}
+    return merged(study.case("figure8-wall"), changes)
+
+
+@dataclass
+class Live:
+    """A served page with its loop, and a browser's tab on it."""
+
+    server: PageServer
+    page: Page
+    tab: Tab
+    folder: Path
+    complaints: list[str] = field(default_factory=list)
+    """errors in the browser's console"""
+
+    def open_tab(self, name: str) -> None:
+        self.tab.get_by_role("tab", name=name).click()
+
+    def latest(self, column: str) -> float:
+        return self.page.plots.latest(column)
+
+    @property
+    def time(self) -> float:
+        """s of simulated time that the page knows of."""
+        rows = self.page.plots.rows
+        return float(rows[-1, 0]) if len(rows) else -1.0
+
+    def settle(self, seconds: float) -> None:
+        """Lets simulated time pass."""
+        end = self.time + seconds
+        until(lambda: self.time >= end, f"{seconds:g} s of simulated time")
+
+    def column(self, name: str) -> np.ndarray:
+        rows = self.page.plots.rows
+        return rows[:, self.page.plots.names.index(name)]
+
+    def shoot(self, name: str) -> None:
+        """Takes a picture of the page, if a folder is given for it."""
+        folder = os.environ.get("PLIANT_SCREENSHOTS")
+        if folder:
+            note = self.tab.get_by_text("Software WebGL rendering detected")
+            if note.count():
+                note.locator("xpath=ancestor::*[@role='alert']").locator("button").first.click()
+                note.wait_for(state="detached")
+            self.tab.screenshot(path=Path(folder) / f"live_{name}.png")
+
+
+@pytest.fixture(scope="module")
+def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """One page for the tests of a module; every test leaves it playing."""
+    folder = tmp_path_factory.mktemp("logs")
+    with PageServer("127.0.0.1", 0) as server, live_page(server, folder) as page:
+        page.run.start("stack", wall_case())
+        thread = threading.Thread(target=page.serve)
+        thread.start()
+        tab = browser.new_page(viewport={"width": 1280, "height": 800})
+        made = Live(server, page, tab, folder)
+        tab.on("pageerror", lambda error: made.complaints.append(str(error)))
+        tab.on("console", lambda note: made.complaints.append(note.text) if note.type == "error" else None)
+        try:
+            tab.goto(server.url)
+            until(lambda: made.time > 0.0, "the first samples")
+            yield made
+        finally:
+            tab.close()
+            page.stop()
+            thread.join()

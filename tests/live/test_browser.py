@@ -1,0 +1,186 @@
+"""The page in a real browser: what is turned there happens in the loop, what happens in the loop shows there."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from pliant.live.replay import LoggedScene
+from pliant.telemetry.log import Log
+from tests.live.conftest import Live, until
+
+F_MAX = "control.tasks.ee.translation.force_max"
+
+
+def thumb(live: Live, folder: str, label: str):  # type: ignore[no-untyped-def]  # a Playwright locator
+    """The thumb of a slider, by the text of its label."""
+    return live.tab.get_by_role("slider").nth(_place(live, label))
+
+
+def _place(live: Live, label: str) -> int:
+    """Which slider on the open tab has a label."""
+    return live.tab.evaluate(
+        """label => {
+            const labels = [...document.querySelectorAll('label')];
+            const sliders = [...document.querySelectorAll('[role=slider]')];
+            const found = labels.find(l => l.innerText.startsWith(label));
+            const y = found.getBoundingClientRect().top;
+            const far = s => Math.abs(s.getBoundingClientRect().top - y);
+            return sliders.indexOf(sliders.reduce((a, b) => far(a) <= far(b) ? a : b));
+        }""",
+        label,
+    )
+
+
+def test_the_page_loads_without_errors(live: Live) -> None:
+    live.tab.get_by_text("playing").wait_for()
+    for text in ("force, N", "position error, mm", "energy, J"):
+        live.tab.get_by_text(text, exact=True).wait_for()
+    live.settle(2.0)
+    live.shoot("run")
+    live.open_tab("Effort")
+    live.tab.get_by_text("torque, N·m", exact=True).wait_for()
+    live.open_tab("Contact")
+    assert live.complaints == []
+
+
+def test_a_typed_target_moves_the_robot_onto_the_wall(live: Live) -> None:
+    """The offset is typed in the browser; the wall at x = 0.07 m stops the tool, and the force grows to its bound."""
+    live.open_tab("Touch")
+    box = live.tab.locator("label", has_text="offset").locator("xpath=following::input[1]")
+    before = live.latest("contact")
+    box.fill("0.25")
+    box.press("Enter")
+    until(lambda: live.latest("contact") > before + 50.0, "contact")
+    live.settle(1.5)
+    assert live.latest("contact") == pytest.approx(bound(live), rel=0.15)
+    live.shoot("touch")
+
+
+def bound(live: Live) -> float:
+    """F_max of the tool's task as the page believes it."""
+    config = live.page.config
+    assert config is not None
+    return float(config.parameters().tasks["ee"].translation.force_max)  # type: ignore[attr-defined]
+
+
+def test_a_slider_changes_the_running_controller(live: Live) -> None:
+    """F_max turned down in the browser while the tool presses: the force follows within the study's settling time."""
+    live.open_tab("Tune")
+    pressed, old = live.latest("contact"), bound(live)
+    slider = thumb(live, "translation", "force max")
+    slider.focus()
+    for _ in range(25):
+        slider.press("ArrowLeft")
+    until(lambda: bound(live) < old - 20.0, "a new bound")
+    live.settle(1.0)
+    new = bound(live)
+    assert live.latest("commanded") <= new * (1.0 + 1e-9)
+    assert live.latest("contact") < pressed - 0.6 * (old - new)
+    live.shoot("tune")
+
+
+def test_an_impossible_value_is_refused_with_the_reason(live: Live) -> None:
+    live.open_tab("Tune")
+    old = live.page.config
+    box = live.tab.locator("label", has_text="force max").first.locator("xpath=following::input[1]")
+    box.fill("1")
+    box.press("Enter")
+    live.tab.get_by_text("Refused:").first.wait_for()
+    assert "force" in live.tab.get_by_text("Refused:").first.inner_text()
+    assert live.page.config == old
+    until(lambda: float(box.input_value()) == bound(live), "the old value in the control")
+
+
+def test_a_push_shows_in_the_plots(live: Live) -> None:
+    live.open_tab("Touch")
+    live.tab.get_by_role("button", name="Back to the study's target").click()
+    until(lambda: live.latest("contact") == 0.0, "no contact")
+    live.settle(2.0)
+    calm = float(np.abs(live.column("error.z")[-25:]).max())
+    force = live.tab.get_by_role("slider").nth(_place(live, "force"))
+    force.focus()
+    for _ in range(30):
+        force.press("ArrowRight")
+    live.tab.get_by_role("button", name="Push", exact=True).click()
+    until(lambda: np.any(live.column("push.x")[-60:] > 30.0), "a push")
+    live.settle(0.3)
+    live.shoot("push")
+    assert float(np.abs(live.column("error.x")[-40:]).max()) > calm + 0.1  # mm
+
+
+def test_pause_step_and_slow_motion(live: Live) -> None:
+    live.open_tab("Run")
+    live.tab.get_by_role("button", name="Pause").click()
+    live.tab.get_by_text("paused").wait_for()
+    time.sleep(0.3)
+    ticks = live.page.run.ticks
+    live.tab.get_by_role("button", name="Step one period").click()
+    until(lambda: live.page.run.ticks == ticks + 1, "one period")
+    time.sleep(0.3)
+    assert live.page.run.ticks == ticks + 1
+    live.tab.get_by_role("button", name="Play").click()
+    until(lambda: live.page.run.ticks > ticks + 50, "more periods")
+
+
+def test_recording_and_replay(live: Live) -> None:
+    """What was recorded from the page is what the page shows."""
+    live.open_tab("Run")
+    live.tab.get_by_role("button", name="Record").click()
+    live.tab.get_by_text("recording").wait_for()
+    live.settle(1.0)
+    live.tab.get_by_role("button", name="Stop recording").click()
+    until(lambda: live.page.run.recording is None, "the end of the log")
+    [path] = list(live.folder.glob("*.mcap"))
+    log = Log.open(path)
+    assert not log.truncated
+    assert log.failure is None
+    shown = LoggedScene(log)
+    middle = log.time()[len(log.time()) // 2]
+    picture = shown.picture(float(middle))
+    index = int(np.searchsorted(log.time("truth/flange/position"), middle))
+    np.testing.assert_allclose(picture.tool, log["truth/flange/position"][index], atol=1e-9)
+    columns, rows = shown.columns, shown.rows
+    error = 1e3 * (log["reference/flange/position"] - log["truth/flange/position"])
+    first = columns.names.index("error.x")
+    np.testing.assert_allclose(rows[:, first : first + 3], error, atol=1e-9)
+
+
+def test_closing_the_browser_leaves_run_and_log_whole(live: Live) -> None:
+    before = set(live.folder.glob("*.mcap"))
+    other = live.tab.context.browser.new_page()  # type: ignore[union-attr]
+    other.goto(live.server.url)
+    other.get_by_role("button", name="Steer from this browser").click()
+    until(lambda: live.page.seat.watchers() == 1, "somebody who watches")
+    other.get_by_role("button", name="Record").click()
+    other.get_by_text("recording").wait_for()
+    live.settle(0.3)
+    other.close()
+    until(lambda: live.page.seat.watchers() == 0, "the browser's end")
+    live.settle(0.5)
+    live.tab.get_by_role("button", name="Stop recording").click()
+    until(lambda: live.page.run.recording is None, "the end of the log")
+    [path] = set(live.folder.glob("*.mcap")) - before
+    log = Log.open(path)
+    assert not log.truncated
+    np.testing.assert_allclose(np.diff(log.time()), 1e-3, atol=1e-9)
+    assert log.duration > 0.8
+
+
+def test_a_watcher_cannot_steer(live: Live) -> None:
+    other = live.tab.context.browser.new_page()  # type: ignore[union-attr]
+    try:
+        other.goto(live.server.url)
+        until(lambda: live.page.seat.watchers() == 1, "somebody who watches")
+        ticks = live.page.run.ticks
+        other.get_by_role("button", name="Pause").click()
+        other.get_by_text("You are watching").first.wait_for()
+        until(lambda: live.page.run.ticks > ticks + 200, "the loop going on")
+    finally:
+        other.close()
+
+
+def test_nothing_went_wrong_in_the_console(live: Live) -> None:
+    assert live.complaints == []
