@@ -77,7 +77,9 @@ def test_a_slider_changes_the_running_controller(live: Live) -> None:
     until(lambda: bound(live) < old - 20.0, "a new bound")
     live.settle(1.0)
     new = bound(live)
-    assert live.latest("commanded") <= new * (1.0 + 1e-9)
+    for axis in "xyz":
+        assert abs(live.latest(f"commanded.{axis}")) <= new * (1.0 + 1e-9)
+    assert abs(live.latest("commanded.x")) > 0.95 * new  # it is the bound that holds it there
     assert live.latest("contact") < pressed - 0.6 * (old - new)
     live.shoot("tune")
 
