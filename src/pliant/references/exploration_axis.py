@@ -174,8 +174,11 @@ class ExploredAxis:
         # With little motion the ratio is a lower bound: it may raise the estimate, not lower it.
         seen = min(max(change / max(moved, rules.least_motion), rules.stiffness_floor), _CAUTION * ceiling)
         if moved > rules.least_motion or seen > self.stiffness:
-            lag = rules.window if seen < self.stiffness else 0.25 * rules.window  # caution comes faster
-            self.stiffness += period / (lag + period) * (seen - self.stiffness)
+            if seen < self.stiffness:  # its inverse, to which the speed of the regulation is proportional, is filtered
+                share = period / (rules.window + period)
+                self.stiffness /= 1.0 + share * (self.stiffness / seen - 1.0)
+            else:  # caution comes faster
+                self.stiffness += period / (0.25 * rules.window + period) * (seen - self.stiffness)
         elif self.stiffness > ceiling:
             self.stiffness += period / (rules.window + period) * (ceiling - self.stiffness)
         self.stiffness = max(self.stiffness, min(rules.stiffness_floor, ceiling))

@@ -101,6 +101,10 @@ class Study(ABC, Generic[C]):
     def metrics(self, config: C, log: Log) -> tuple[Metric, ...]:
         """Measures a run; the paper's number and the target stand beside where there is one."""
 
+    def verdict(self, config: C, metrics: Sequence[Metric]) -> str | None:
+        """Why a run that reached its end counts as failed all the same; None if it does not."""
+        return None
+
     @abstractmethod
     def figures(self, config: C, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         """Draws one run."""

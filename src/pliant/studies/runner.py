@@ -90,7 +90,8 @@ def _measured(
     if failure is not None:
         return Result(config, (), failure, wired.warnings, path)
     drawn = study.figures(config, wired, log, folder) if folder is not None else []
-    return Result(config, study.metrics(config, log), None, wired.warnings, path, tuple(drawn))
+    measured = study.metrics(config, log)
+    return Result(config, measured, study.verdict(config, measured), wired.warnings, path, tuple(drawn))
 
 
 class _Reporter:

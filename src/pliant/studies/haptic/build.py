@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
+
+import pinocchio as pin
 
 from pliant.controllers.attractor import Law
 from pliant.controllers.stack import Stack
@@ -16,12 +19,14 @@ from pliant.references.haptic_exploration import CHANNELS, HapticExploration
 from pliant.references.harmonic_attractor import AttractorSettings
 from pliant.references.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.superposition import MotionLimits
+from pliant.references.workspace import workspace_of
 from pliant.robot import Robot
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, LinkCapsule, MujocoPlant
 from pliant.simulation.actuation import ActuationConfig
 from pliant.simulation.sensing import SensingConfig
 from pliant.studies.base import Experiment
 from pliant.studies.haptic.config import HapticConfig, Planner
+from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import warnings_of
 from pliant.studies.haptic.scene import scene_of
 from pliant.studies.haptic.script import schedule
@@ -37,11 +42,14 @@ def build(config: HapticConfig) -> Experiment:
     Raises:
         PliantError: a robot, frame or parameter that does not fit, or a force that nothing could feel.
     """
-    robot = Robot.load(config.robot)
+    warnings = warnings_of(config, Robot.load(config.robot))
+    config = drawn(config)
+    robot = robot_of(config)
     robot.frame_id(config.frame)
     _require_force_signal(config)
     controller = foot_impedance(robot, config)
     units = [Channel(name, about.unit) for name, about in controller.channels.items()]
+    units.append(Channel(f"planner/{config.frame}/clamped", "m"))
     units += [Channel(f"exploration/{config.frame}/{name}", unit) for name, unit in CHANNELS.items()]
     return Experiment(
         robot=robot,
@@ -50,8 +58,21 @@ def build(config: HapticConfig) -> Experiment:
         source=references(config, robot),
         controller=controller,
         channels=tuple(units),
-        warnings=warnings_of(config, robot),
+        warnings=warnings,
     )
+
+
+def robot_of(config: HapticConfig) -> Robot:
+    """The leg, as heavy as the configuration says."""
+    robot = Robot.load(config.robot)
+    if config.hardware.mass_scale is None:
+        return robot
+    factors = robot.vector(config.hardware.mass_scale, "hardware.mass_scale")
+    model = robot.model.copy()
+    for joint, factor in enumerate(factors, start=1):
+        body = model.inertias[joint]
+        model.inertias[joint] = pin.Inertia(factor * body.mass, body.lever, factor * body.inertia)
+    return replace(robot, model=model)
 
 
 def foot_impedance(robot: Robot, config: HapticConfig) -> Stack:
@@ -66,7 +87,7 @@ def references(config: HapticConfig, robot: Robot) -> ReferenceSource[Any]:
     """What the user wants, planned, and then explored."""
     exploration = effective_exploration(config)
     wanted = schedule(config, exploration)
-    planned = _planned(wanted, config.planner, robot, printed=config.controller == "haptic-paper")
+    planned = _planned(wanted, config.planner, robot, config.frame, printed=config.controller == "haptic-paper")
     return planned if config.controller == "haptic-hold" else HapticExploration(planned, exploration)
 
 
@@ -106,12 +127,14 @@ def plant_of(config: HapticConfig, robot: Robot) -> Plant[Any]:
     return ImperfectPlant(plant, imperfections, seed=config.seed)
 
 
-def _planned(wanted: ReferenceSource[Any], planner: Planner, robot: Robot, printed: bool) -> ReferenceSource[Any]:
+def _planned(
+    wanted: ReferenceSource[Any], planner: Planner, robot: Robot, frame: str, printed: bool
+) -> ReferenceSource[Any]:
     if printed or planner.kind == "attractor":
         # as printed, eq. 3 gets stuck or runs away and nothing else could be compared: the corrected reading
         return AttractorPlanner(wanted, robot.placement, AttractorSettings(planner.speed, planner.acceleration))
     limits = PlannerLimits(linear=MotionLimits(planner.speed, planner.acceleration))
-    return HarmonicPlanner(wanted, robot.placement, limits)
+    return HarmonicPlanner(wanted, robot.placement, limits, {frame: workspace_of(robot, frame)})
 
 
 def _require_force_signal(config: HapticConfig) -> None:

@@ -112,6 +112,9 @@ class Hardware(Config):
     joint_damping: float = quantity(0.0, "N·m s/rad", "in the joints' mechanics", ge=0.0)
     bandwidth: float | None = quantity(None, "Hz", "first-order torque response of the drives; none: immediate", gt=0.0)
     peak_torque: float | None = quantity(None, "N·m", "largest motor torque; none: the robot's limit", gt=0.0)
+    mass_scale: tuple[float, ...] | None = quantity(
+        None, "1", "factor on the mass and inertia of each joint's link; none: 1"
+    )
     force_noise: float = quantity(0.0, "N", "standard deviation of the force sensor's white noise", ge=0.0)
     force_delay: float = quantity(0.0, "s", "age of the force signal", ge=0.0)
     command_delay: float = quantity(0.0, "s", "from a measurement to the effect of its command", ge=0.0)
@@ -150,6 +153,14 @@ class Step(Config):
     reset: bool | None = Field(default=None, description="let the offset return when contact is lost")
 
 
+class OnlineChanges(Config):
+    """Random changes of F_d, K_0, F_max, x_b, reset and target, drawn from the seed; some do not fit together."""
+
+    count: int = Field(default=50, ge=1, description="how many")
+    rate: float = quantity(4.0, "Hz", "changes per second", gt=0.0)
+    begin: float = quantity(1.0, "s", "of the first one", gt=0.0)
+
+
 class Check(Config):
     """One metric: of which signal, when, and what it should keep to. All on true signals."""
 
@@ -168,14 +179,17 @@ class Check(Config):
         "tilt",
         "speed",
         "over",
+        "link",
+        "reachable",
         "share",
     ] = Field(description="what is measured; see `pliant.studies.haptic.measure`")
     name: str
     begin: float = quantity(0.0, "s", "start of the window; the command's time for `settle`")
     end: float | None = quantity(None, "s", "end of the window; none: of the run")
     axis: int = Field(default=2, ge=0, le=2, description="x, y, z")
-    wanted: float = quantity(0.0, "N", "force that was asked for")
+    wanted: float | None = quantity(None, "N", "force that was asked for; none: as the log has it")
     before: float | None = quantity(None, "N", "force before a step; none: the true force at its command")
+    relative: bool = Field(default=False, description="as a share of the force that was asked for")
     target: float | None = Field(default=None, description="bound of the metric")
 
 
@@ -201,6 +215,8 @@ class HapticConfig(CaseConfig):
     steps: tuple[Step, ...] = Field(
         min_length=1, description="what the user does, in order of time; the first one gives target and force"
     )
+    online: OnlineChanges | None = Field(default=None, description="random changes, after the steps")
+    random: bool = Field(default=False, description="draw surface, masses and force from the seed")
     checks: tuple[Check, ...] = Field(default=(), description="what the run is judged by")
     snapshots: tuple[float, ...] = quantity((), "s", "moments that are drawn")
 

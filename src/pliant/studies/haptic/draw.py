@@ -13,6 +13,7 @@ from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
 from pliant.studies.base import Experiment, Result
 from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.delays import delay_figure
 from pliant.studies.haptic.measure import Signals
 from pliant.studies.runner import file_stem
 from pliant.telemetry.log import Log
@@ -110,5 +111,7 @@ def _thinned(points: Array, most: int = 300) -> Array:
 
 
 def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
-    """Figures of several runs."""
-    return []
+    """The delays that each environment bears, if they were run."""
+    if not any(result.config.case == "delay" and result.config.variant for result in results):
+        return []
+    return [save(delay_figure(results), folder / "delay.png")]

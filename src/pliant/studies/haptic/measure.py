@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from pliant.errors import ConfigError
 from pliant.spatial import Array
 from pliant.studies.haptic.config import Check, HapticConfig
 from pliant.studies.haptic.scene import BOX
@@ -80,27 +82,35 @@ def measure(config: HapticConfig, log: Log) -> tuple[Metric, ...]:
 def _metric(check: Check, signals: Signals, judged: bool) -> Metric:
     window = metrics.between(signals.time, check.begin, np.inf if check.end is None else check.end)
     unit, function = _KINDS[check.kind]
-    value = function(check, signals, window)
+    value = function(check, signals, window) if window.any() else math.nan  # the run ended before
     target = check.target if judged else None
+    unit = "1" if check.relative else unit
     return Metric(check.name, float(value), unit, target=target, at_least=check.kind in LOWER_BOUNDS)
 
 
+def _error(check: Check, signals: Signals, window: Window) -> Array:
+    """(n,) force error along the check's axis, N."""
+    wanted = signals.wanted[window, check.axis] if check.wanted is None else check.wanted
+    error = signals.force[window, check.axis] - wanted
+    return error / np.abs(wanted) if check.relative else error
+
+
 def _rms(check: Check, signals: Signals, window: Window) -> float:
-    return float(np.sqrt(np.mean((signals.force[window, check.axis] - check.wanted) ** 2)))
+    return float(np.sqrt(np.mean(_error(check, signals, window) ** 2)))
 
 
 def _max(check: Check, signals: Signals, window: Window) -> float:
-    return float(np.max(np.abs(signals.force[window, check.axis] - check.wanted)))
+    return float(np.max(np.abs(_error(check, signals, window))))
 
 
 def _settle(check: Check, signals: Signals, window: Window) -> float:
     time, force = signals.time[window], signals.force[window, check.axis]
     before = float(force[0]) if check.before is None else check.before
-    return metrics.settling_time(time, force, check.wanted, before, check.begin)
+    return metrics.settling_time(time, force, _wanted(check), before, check.begin)
 
 
 def _breaks(check: Check, signals: Signals, window: Window) -> float:
-    return metrics.contact_breaks(np.copysign(1.0, check.wanted) * signals.force[window, check.axis])
+    return metrics.contact_breaks(np.copysign(1.0, _wanted(check)) * signals.force[window, check.axis])
 
 
 def _peak(check: Check, signals: Signals, window: Window) -> float:
@@ -147,8 +157,24 @@ def _speed(check: Check, signals: Signals, window: Window) -> float:
 
 
 def _over(check: Check, signals: Signals, window: Window) -> float:
-    force = np.linalg.norm(signals.force[window], axis=1)
-    return float(np.max(force - np.linalg.norm(signals.wanted[window], axis=1)))
+    """How far the force exceeds the desired one along the check's axis, N."""
+    wanted = signals.wanted[window, check.axis]
+    side = np.where(wanted < 0.0, -1.0, 1.0)
+    return float(np.max(side * (signals.force[window, check.axis] - wanted)))
+
+
+def _link(check: Check, signals: Signals, window: Window) -> float:
+    return metrics.peak(np.linalg.norm(signals.log["truth/shank/wrench"][window, :3], axis=1))
+
+
+def _reachable(check: Check, signals: Signals, window: Window) -> float:
+    return metrics.peak(signals.explored("reachable")[window, check.axis] - _wanted(check))
+
+
+def _wanted(check: Check) -> float:
+    if check.wanted is None:
+        raise ConfigError(f"check {check.name!r} of kind {check.kind!r} needs `wanted`, the force that was asked for")
+    return check.wanted
 
 
 def _share(check: Check, signals: Signals, window: Window) -> float:
@@ -172,6 +198,8 @@ _KINDS: Mapping[str, tuple[str, Callable[[Check, Signals, Window], float]]] = {
     "tilt": ("deg", _tilt),
     "speed": ("m/s", _speed),
     "over": ("N", _over),
+    "link": ("N", _link),
+    "reachable": ("N", _reachable),
     "share": ("1", _share),
 }
 """kind of check → unit, and how it is measured"""

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from pliant.controllers.advice import advise, sentences, smallest_inertia
+from pliant.references.workspace import Workspace, workspace_of
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
@@ -14,7 +15,9 @@ from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.script import Wish, wishes
 
 _KNEE_SPEED = 0.05  # m/s at which the foot may cross the knee of the profile: the planner's speeds leave it far behind
-_SAFE_GAIN = 0.1  # k_I over the actuators' bandwidth in rad/s
+_SAFE_GAIN = (
+    0.5  # k_I over the actuators' bandwidth in rad/s: without a limit cycle on a rigid floor and on a soft ball
+)
 
 
 def warnings_of(config: HapticConfig, robot: Robot) -> tuple[str, ...]:
@@ -22,10 +25,9 @@ def warnings_of(config: HapticConfig, robot: Robot) -> tuple[str, ...]:
     found: list[str] = []
     found += _gains(config, robot)
     found += _exploration_gain(config)
-    reach = farthest_reach(robot, config.frame)
-    hip = _first_joint(robot)
+    workspace = workspace_of(robot, config.frame)
     for time, wish in wishes(config, config.exploration):
-        found += [f"t = {time:g} s: {text}" for text in [*_force_bounds(wish), *_distance(wish, hip, reach)]]
+        found += [f"t = {time:g} s: {text}" for text in [*_force_bounds(wish), *_distance(wish, workspace)]]
     return tuple(dict.fromkeys(found))
 
 
@@ -80,29 +82,15 @@ def _force_bounds(wish: Wish) -> list[str]:
     return found
 
 
-def _distance(wish: Wish, hip: Array, reach: float) -> list[str]:
-    distance = float(np.linalg.norm(np.array(wish.target) - hip))
-    if distance <= reach:
+def _distance(wish: Wish, workspace: Workspace) -> list[str]:
+    target = np.array(wish.target)
+    nearest = workspace.nearest(target)
+    if nearest is target:
         return []
     return [
-        f"the target {list(wish.target)} m lies {distance:.3f} m from the first joint, beyond the reach of"
-        f" {reach:.3f} m; the impedance pulls with at most F_max towards it"
+        f"the target {list(wish.target)} m lies {1e3 * np.linalg.norm(target - nearest):.0f} mm out of reach and is"
+        f" brought back; safe: {np.round(nearest, 4).tolist()} m"
     ]
-
-
-def farthest_reach(robot: Robot, frame: str) -> float:
-    """Largest distance of a frame from the first joint, m: the sum of the links' lengths, which no posture exceeds."""
-    model = robot.model
-    at = model.frames[robot.frame_id(frame)]
-    length, joint = float(np.linalg.norm(at.placement.translation)), at.parentJoint
-    while joint > 1:
-        length += float(np.linalg.norm(model.jointPlacements[joint].translation))
-        joint = model.parents[joint]
-    return length
-
-
-def _first_joint(robot: Robot) -> Array:
-    return np.array(robot.model.jointPlacements[1].translation)
 
 
 def reachable_force(depth: float, surface_stiffness: float, stiffness: float, force_max: float, bound: float) -> float:

@@ -37,7 +37,7 @@ def _surface(material: Material) -> Surface:
     return Surface(material.stiffness, material.damping, material.friction, material.friction_moving)
 
 
-def height_at(floor: Floor, x: float, y: float) -> float:
-    """z of the floor below a point, m."""
+def touching_height(floor: Floor, x: float, y: float, radius: float) -> float:
+    """z of the centre of a sphere that touches the floor above or below (x, y), m."""
     n = rpy(floor.tilt[0], floor.tilt[1], 0.0)[:, 2]
-    return float(floor.height - np.dot(n[:2], (x, y)) / n[2])
+    return float(floor.height + (radius - np.dot(n[:2], (x, y))) / n[2])

@@ -10,9 +10,13 @@ from pliant.studies.haptic import draw
 from pliant.studies.haptic.build import build
 from pliant.studies.haptic.cases import CASES
 from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.delays import delay_runs
 from pliant.studies.haptic.measure import measure
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
+
+_RANDOM_SCENES = 20
+_ONLINE_SEEDS = 3
 
 
 class HapticStudy(Study[HapticConfig]):
@@ -28,7 +32,25 @@ class HapticStudy(Study[HapticConfig]):
 
     def runs(self, case: str, seeds: int | None = None) -> Sequence[HapticConfig]:
         config = self.case(case)
-        return [config, config.model_copy(update={"controller": "haptic-paper"})]
+        if case == "delay":
+            return [config, *delay_runs(config)]
+        count = 1
+        if config.random or config.online is not None:
+            count = seeds or (_RANDOM_SCENES if config.random else _ONLINE_SEEDS)
+        seeded = [config.model_copy(update={"seed": config.seed + i}) for i in range(count)]
+        printed = [run.model_copy(update={"controller": "haptic-paper"}) for run in seeded]
+        if config.online is None:
+            return [*seeded, *printed]
+        held = config.exploration.model_copy(update={"reset": False})
+        without = [run.model_copy(update={"exploration": held, "variant": "no reset"}) for run in seeded]
+        return [*seeded, *without, *printed]
+
+    def verdict(self, config: HapticConfig, metrics: Sequence[Metric]) -> str | None:
+        """A random scene in which a bound broke is a failed run: it names the seed that replays it."""
+        missed = [f"{m.name} {m.value:.3g} {m.unit}".strip() for m in metrics if m.met is False]
+        if not config.random or not missed:
+            return None
+        return f"{'; '.join(missed)} (replay: pliant run haptic --case {config.case} --seed {config.seed})"
 
     def metrics(self, config: HapticConfig, log: Log) -> tuple[Metric, ...]:
         return measure(config, log)
