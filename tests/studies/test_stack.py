@@ -105,7 +105,7 @@ def test_half_the_physics_step_changes_the_metrics_by_less_than_two_percent() ->
     np.testing.assert_allclose(fine, coarse, rtol=0.02, atol=0.005)  # mm
 
 
-def test_the_elbow_leaks_into_the_tool_as_it_gets_stronger() -> None:
+def test_the_balance_case_changes_the_elbow_and_with_it_the_tool() -> None:
     runs = [config for config in STUDY.runs("balance") if config.variant in ("elbow-0N", "elbow-100N")]
     errors: list[float] = []
     for config in runs:

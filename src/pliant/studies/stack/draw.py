@@ -124,8 +124,9 @@ def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
 def _rmse_groups(results: Sequence[Result]) -> dict[str, list[Metric]]:
     groups: dict[str, list[Metric]] = {}
     for result in results:
-        if result.config.case not in groups and result.config.seed == 0:
-            groups[result.config.case] = [m for m in result.metrics if m.name in ("RMSE x", "RMSE y", "RMSE z")]
+        errors = [m for m in result.metrics if m.name in ("RMSE x", "RMSE y", "RMSE z") and m.paper is not None]
+        if errors and result.config.seed == 0:
+            groups.setdefault(result.config.case, errors)
     return groups
 
 
@@ -139,7 +140,7 @@ def _balance(results: Sequence[Result]) -> Figure:
         ordered,
         "F_max of the elbow's task, N",
         "RMSE of the tool, mm",
-        "The stronger the elbow, the more it leaks into the tool",
+        "Tool error against the strength of the elbow's task",
     )
 
 
