@@ -82,6 +82,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         phases: in order; the last one holds.
         rotation: R_world_frame (3, 3) throughout.
         lookahead: of the preview; None for none.
+        posture: (n,) joint configuration that goes with the whole task, rad; None for none.
 
     Raises:
         ConfigError: no phase, or two of one name.
@@ -89,7 +90,13 @@ class PhasedSource(ReferenceSource[PhaseState]):
     """
 
     def __init__(
-        self, robot: Robot, frame: str, phases: Sequence[TaskPhase], rotation: Array, lookahead: Lookahead | None = None
+        self,
+        robot: Robot,
+        frame: str,
+        phases: Sequence[TaskPhase],
+        rotation: Array,
+        lookahead: Lookahead | None = None,
+        posture: Array | None = None,
     ) -> None:
         names = [phase.name for phase in phases]
         if not names or len(set(names)) < len(names):
@@ -97,6 +104,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         self.frame, self.phases, self.rotation, self.lookahead = frame, tuple(phases), rotation, lookahead
         self._model, self._data = robot.model, robot.model.createData()
         self._frame_id = robot.frame_id(frame)
+        self.posture = None if posture is None else robot.vector(posture, "the posture")
 
     def init(self, estimate: Estimate) -> PhaseState:
         here = self._position(estimate.q)
@@ -106,7 +114,8 @@ class PhasedSource(ReferenceSource[PhaseState]):
         state = self._advanced(estimate, state)
         now = self._task(state, estimate.time)
         phase = self.phases[state.index].name
-        return Reference(estimate.time, (now,), phase=phase, preview=self._preview(state, estimate.time)), state
+        preview = self._preview(state, estimate.time)
+        return Reference(estimate.time, (now,), self.posture, phase, preview), state
 
     # ------------------------------------------------------------------ inside
 
@@ -169,6 +178,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
             velocity=np.array([task.velocity for task in tasks]),
             wrench=np.array([task.wrench for task in tasks]),
             phase=tuple(names),
+            posture=None if self.posture is None else np.tile(self.posture, (len(times), 1)),
         )
 
     def _position(self, q: Array) -> Array:

@@ -20,13 +20,15 @@ from pliant.entries import ControllerEntry, find_entry
 from pliant.errors import ConfigError
 from pliant.estimation import WrenchEstimator
 from pliant.mpc import CONTROLLERS, MpcConfig
+from pliant.references.ik_mink import MinkSolver
+from pliant.references.inverse_kinematics import Target, joint_box
 from pliant.references.phases import Lookahead, PhasedSource, TaskPhase
 from pliant.references.shapes import circle
 from pliant.references.steps import Waypoints, wrench_steps
 from pliant.references.trajectory import Hold
 from pliant.robot import Robot, Tool
 from pliant.simulation import ForceSensor, MujocoPlant, Scene, Surface, table
-from pliant.spatial import rpy
+from pliant.spatial import Array, rpy
 from pliant.studies.base import CaseConfig, Experiment, Study
 from pliant.studies.config import Config, merged
 from pliant.telemetry import metrics as measure
@@ -42,7 +44,7 @@ _TURNED_DOWN = rpy(math.pi, 0.0, math.pi)
 
 
 class Table(Config):
-    """The surface that is polished."""
+    """The surface that is polished. The tool comes down at y = 0."""
 
     height: float = Field(default=0.01, description="z of its surface", json_schema_extra={"unit": "m"})
     x: float = Field(default=0.65, description="x at which the tool comes down", json_schema_extra={"unit": "m"})
@@ -55,6 +57,9 @@ class Table(Config):
 class Task(Config):
     """What the tool does. Times count from the start of the run."""
 
+    start: float = Field(
+        default=0.10, gt=0.0, description="height over the table where the run starts", json_schema_extra={"unit": "m"}
+    )
     above: float = Field(
         default=0.02, gt=0.0, description="height over the table where reach ends", json_schema_extra={"unit": "m"}
     )
@@ -157,6 +162,7 @@ class Polishing(Study[PolishingConfig]):
             Scene((table(point, config.table.tilt, surface),)),
             period=config.period,
             physics_step=config.physics_step,
+            start=_start(config, robot),
             sensors=[ForceSensor(FRAME)],
             observe=[FRAME],
         )
@@ -211,12 +217,12 @@ def polishing_source(config: PolishingConfig, robot: Robot, lookahead: Lookahead
     Raises:
         ConfigError: times that do not increase.
     """
-    task, start = config.task, robot.placement(robot.home, FRAME)[0]
+    task = config.task
     ends = [task.reach, task.touch, task.pressed, task.circle]
     if any(late <= early for early, late in zip([0.0, *ends], ends, strict=False)):
         raise ConfigError(f"reach, touch, pressed and circle must increase, got {ends}")
-    surface = np.array([config.table.x, start[1], config.table.height + BALL_RADIUS])
-    above = surface + np.array([0.0, 0.0, task.above])
+    surface = _touching(config)
+    start, above = surface + np.array([0.0, 0.0, task.start]), surface + np.array([0.0, 0.0, task.above])
     descent = task.touch - task.reach
     below = surface - np.array([0.0, 0.0, task.above])  # where a descent that nothing stops would end
     down = [above, surface, below] if task.found else [above, surface]
@@ -232,7 +238,30 @@ def polishing_source(config: PolishingConfig, robot: Robot, lookahead: Lookahead
         TaskPhase("contact", at_touch, "touch", pressing, task.circle - task.pressed, touches=True),
         TaskPhase("circle", turn, "touch", pressing, touches=True),
     )
-    return PhasedSource(robot, FRAME, phases, _TURNED_DOWN, lookahead)
+    return PhasedSource(robot, FRAME, phases, _TURNED_DOWN, lookahead, robot.home)
+
+
+def _touching(config: PolishingConfig) -> Array:
+    """(3,) m, centre of the ball where it just touches the table."""
+    return np.array([config.table.x, 0.0, config.table.height + BALL_RADIUS])
+
+
+def _start(config: PolishingConfig, robot: Robot) -> Array:
+    """(n,) rad: the paper's configuration with the tool turned down and lifted, for there it stands in the table.
+
+    Raises:
+        ConfigError: the robot cannot take that pose.
+    """
+    solver = MinkSolver(robot, FRAME)
+    target = Target(_touching(config) + np.array([0.0, 0.0, config.task.start]), _TURNED_DOWN)
+    q = solver.solve(robot.home, robot.home, joint_box(robot), target)
+    distance, angle = solver.shortfall(q, target)
+    if distance > 1e-3 or angle > 1e-2:
+        raise ConfigError(
+            f"robot {robot.name!r} must reach {np.round(target.position, 3).tolist()} m with its tool pointing down: it"
+            f" misses by {1e3 * distance:.1f} mm and {angle:.2f} rad"
+        )
+    return q
 
 
 STUDY = Polishing()

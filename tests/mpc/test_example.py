@@ -1,0 +1,35 @@
+"""Example 05 does what its docstring says, on two robots."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "05_force_feedback_mpc.py"
+
+
+@pytest.mark.parametrize("robot", ["iiwa14", "lwr4"])
+def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
+    spec = importlib.util.spec_from_file_location("example_05", EXAMPLE)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.main(robot)
+    said = capsys.readouterr().out
+    found = re.fullmatch(rf"{robot}: contact felt at ([\d.]+) s, asked 20 N, got ([\d.]+) ± ([\d.]+) N\n", said)
+    assert found, said
+    felt, mean, spread = (float(text) for text in found.groups())
+    assert 0.4 < felt < 0.7  # 10 mm at 20 mm/s
+    assert mean == pytest.approx(20.0, abs=0.5)
+    assert spread < 1.5
+
+
+def test_it_is_short() -> None:
+    source = EXAMPLE.read_text().split('"""', 2)[2]
+    code = [line for line in source.splitlines() if line.strip() and not line.strip().startswith("#")]
+    body = [line for line in code if not line.startswith(("import", "from"))]
+    assert len(body) <= 40
