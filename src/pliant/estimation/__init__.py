@@ -3,6 +3,7 @@
 from pliant.estimation.direct import DirectEstimator
 from pliant.estimation.filtered import FilteredEstimator
 from pliant.estimation.filters import Butterworth, FirstOrder, LowPass
+from pliant.estimation.momentum_observer import MomentumObserver
 from pliant.estimation.wrench import CarriedMass, TouchThresholds, WrenchEstimator
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
     "FilteredEstimator",
     "FirstOrder",
     "LowPass",
+    "MomentumObserver",
     "TouchThresholds",
     "WrenchEstimator",
 ]

@@ -1,0 +1,182 @@
+"""The generalised-momentum observer: which joint torque acts that the model does not explain.
+
+With d all that the model leaves out (friction, a wrong payload, a bias of the drives, a push),
+
+    M(q) v̇ + C(q, v) v + g(q) = τ + Jᵀλ + d,        p = M v
+    ṗ = τ + Jᵀλ + d + β(q, v),                      β = Cᵀ v − g        (because Ṁ = C + Cᵀ)
+
+and the observer `d̂ = k (p(t) − p(0) − ∫ (τ + Jᵀλ + β + d̂) dt)` is a first-order low-pass of d, `ḋ̂ = k (d − d̂)`,
+without an acceleration and without inverting M. Source: De Luca, Mattone, "Sensorless robot collision detection and
+hybrid force/motion control", ICRA 2005; De Luca, Albu-Schäffer, Haddadin, Hirzinger, "Collision detection and safe
+reaction with the DLR-III lightweight manipulator arm", IROS 2006.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from pliant.errors import ConfigError, SignalError, options
+from pliant.interfaces import Estimator
+from pliant.robot import Robot
+from pliant.signals import Estimate, Measurement
+from pliant.spatial import Array, as_vector
+
+TorqueSource = Literal["sent", "measured"]
+ContactShare = Literal["all", "normal", "none"]
+Compensation = Literal["none", "gravity", "gravity+coriolis"]
+
+
+@dataclass(frozen=True, slots=True)
+class MomentumState:
+    """What the observer remembers."""
+
+    inner: Any
+    """state of the estimator inside"""
+    time: float
+    """s, of the last reading"""
+    momentum: Array
+    """p (n,), N·m s"""
+    explained: Array
+    """Jᵀλ + β (n,) at the last reading, N·m"""
+    torques: tuple[Array, ...]
+    """torques (n,) that the readings do not show yet, the oldest first, N·m"""
+    disturbance: Array
+    """d̂ (n,), N·m"""
+
+
+class MomentumObserver(Estimator[MomentumState]):
+    """Adds `Estimate.disturbance` to another estimator; works in contact and in free space.
+
+    Each step hits the continuous observer's response to a constant d exactly:
+    `d̂ ← d̂ + (1 − e^{−kT}) ((p − p_before)/T − τ − mean(Jᵀλ + β) − d̂)`, the mean taken over both ends of the period.
+    A controller takes the disturbance out by sending `u − d̂`.
+
+    Joint signals come from the measurement itself (a velocity filter would show up as a disturbance), contact wrenches
+    from the estimator inside, which has taken the tool's weight out of them.
+
+    Args:
+        inner: the estimator whose estimates are completed.
+        robot: the model that explains.
+        gain: k, rad/s. Higher finds d faster and passes more velocity noise: about k M σ_v.
+        torque: "sent" counts everything between the command and the link as disturbance (bias, gain, friction of the
+            drives); "measured" trusts the joint torque sensors and leaves what acts behind them.
+        contact: how much of the contact wrenches the model explains. "normal": the force along `normal`, so that
+            friction at the contact falls into d̂; "all": the whole wrench; "none": contact is a disturbance.
+        normal: (3,) outward normal of the surface in the world, any length above zero.
+        frames: whose contact wrenches count; None: every one that the estimator inside reports.
+        compensation: what the robot's own controller adds, invisibly, to the torque.
+        late_readings: whole periods by which q and v are older than the torque that arrives with them.
+
+    Raises:
+        ConfigError: an option that does not exist, a gain that is not above zero, a normal without length.
+        RobotError: a frame that the robot does not have.
+    """
+
+    def __init__(
+        self,
+        inner: Estimator[Any],
+        robot: Robot,
+        *,
+        gain: float = 30.0,
+        torque: TorqueSource = "sent",
+        contact: ContactShare = "normal",
+        normal: npt.ArrayLike = (0.0, 0.0, 1.0),
+        frames: Sequence[str] | None = None,
+        compensation: Compensation = "none",
+        late_readings: int = 0,
+    ) -> None:
+        if not (math.isfinite(gain) and gain > 0.0):
+            raise ConfigError(f"the gain of a momentum observer must be above zero (rad/s), got {gain}")
+        if late_readings < 0:
+            raise ConfigError(f"late_readings must not be negative (periods), got {late_readings}")
+        _check_option("torque", torque, get_args(TorqueSource))
+        _check_option("contact", contact, get_args(ContactShare))
+        _check_option("compensation", compensation, get_args(Compensation))
+        self.inner, self.robot, self.gain = inner, robot, gain
+        self.torque, self.contact, self.compensation = torque, contact, compensation
+        self.late_readings = late_readings
+        self.normal = unit_vector(normal, "normal")
+        self.frames = None if frames is None else frozenset(frames)
+        self._ids = {frame: robot.frame_id(frame) for frame in frames or ()}
+        self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
+
+    def init(self, measurement: Measurement) -> MomentumState:
+        inner = self.inner.init(measurement)
+        estimate, _ = self.inner.step(measurement, inner)
+        momentum, explained = self._model_terms(measurement, estimate.wrenches)
+        torques = (self._applied(measurement),) * self.late_readings
+        return MomentumState(inner, measurement.time, momentum, explained, torques, np.zeros(self.robot.n))
+
+    def step(self, measurement: Measurement, state: MomentumState) -> tuple[Estimate, MomentumState]:
+        """The completed estimate and the next state.
+
+        Raises:
+            SignalError: the measurement is older than the last one.
+        """
+        estimate, inner = self.inner.step(measurement, state.inner)
+        period = measurement.time - state.time
+        if period < 0.0:
+            raise SignalError(f"measurements must arrive in order, got t = {measurement.time} s after {state.time} s")
+        if period == 0.0:  # the first measurement starts the observer and is its first step, too
+            return replace(estimate, disturbance=state.disturbance), replace(state, inner=inner)
+        torques = (*state.torques, self._applied(measurement))
+        momentum, explained = self._model_terms(measurement, estimate.wrenches)
+        unexplained = (momentum - state.momentum) / period - torques[0] - 0.5 * (explained + state.explained)
+        share = -math.expm1(-self.gain * period)
+        disturbance = state.disturbance + share * (unexplained - state.disturbance)
+        after = MomentumState(inner, measurement.time, momentum, explained, torques[1:], disturbance)
+        return replace(estimate, disturbance=disturbance), after
+
+    # ------------------------------------------------------------------ inside
+
+    def _applied(self, measurement: Measurement) -> Array:
+        return measurement.torque_sent if self.torque == "sent" else measurement.torque
+
+    def _model_terms(self, measurement: Measurement, wrenches: Mapping[str, Array]) -> tuple[Array, Array]:
+        """p (n,) and Jᵀλ + β (n,) at a measurement."""
+        model, data, q, v = self.robot.model, self._data, measurement.q, measurement.v
+        upper = np.triu(np.asarray(pin.crba(model, data, q)))  # pinocchio does not promise the lower triangle
+        mass = upper + np.triu(upper, 1).T
+        C = np.array(pin.computeCoriolisMatrix(model, data, q, v))
+        explained: Array = C.T @ v
+        if self.compensation == "none":
+            explained = explained - np.array(pin.computeGeneralizedGravity(model, data, q))
+        elif self.compensation == "gravity+coriolis":
+            explained = explained + C @ v
+        for frame, wrench in wrenches.items():
+            if self.contact != "none" and (self.frames is None or frame in self.frames):
+                explained = explained + self._contact_torque(q, frame, wrench)
+        return np.asarray(mass @ v, dtype=np.float64), explained
+
+    def _contact_torque(self, q: Array, frame: str, wrench: Array) -> Array:
+        """Jᵀλ (n,) of the share of a contact wrench (6,) that the model explains."""
+        if not wrench.any():
+            return np.zeros(self.robot.n)
+        if frame not in self._ids:
+            self._ids[frame] = self.robot.frame_id(frame)
+        axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+        J = pin.computeFrameJacobian(self.robot.model, self._data, q, self._ids[frame], axes)
+        if self.contact == "normal":
+            return np.asarray(J[:3].T @ (self.normal * float(self.normal @ wrench[:3])), dtype=np.float64)
+        return np.asarray(J.T @ wrench, dtype=np.float64)
+
+
+def unit_vector(direction: npt.ArrayLike, name: str) -> Array:
+    """A direction (3,) of length one. Raises ConfigError if it has no length."""
+    vector = as_vector(direction, 3, name)
+    length = float(np.linalg.norm(vector))
+    if length < 1e-9:
+        raise ConfigError(f"{name} must have a length above zero, got {vector.tolist()}")
+    return vector / length
+
+
+def _check_option(name: str, value: str, valid: Sequence[str]) -> None:
+    if value not in valid:
+        raise ConfigError(f"unknown {name} {value!r}; {options(valid, value)}")
