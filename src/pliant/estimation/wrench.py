@@ -17,12 +17,14 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True)
 class CarriedMass:
-    """What a sensor carries and feels: its weight is taken out of the reading."""
+    """What a sensor carries and feels, and how its zero is off: both are taken out of the reading."""
 
     mass: float = 0.0
     """kg"""
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """m, in the sensor's axes"""
+    bias: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    """(6,) what the sensor reads without any load, in its own axes, N and N·m"""
 
 
 @dataclass(frozen=True)
@@ -99,8 +101,10 @@ class WrenchEstimator(Estimator[WrenchState]):
         if frame not in self._frames:
             self._frames[frame] = self.robot.frame_id(frame)
         R_world_sensor: Array = np.array(self._data.oMf[self._frames[frame]].rotation)
-        wrench = np.concatenate([R_world_sensor @ reading[:3], R_world_sensor @ reading[3:]])
         carried = self.carried.get(frame)
+        if carried is not None:
+            reading = reading - np.array(carried.bias)
+        wrench = np.concatenate([R_world_sensor @ reading[:3], R_world_sensor @ reading[3:]])
         if carried is None or carried.mass == 0.0:
             return wrench
         weight: Array = carried.mass * np.array(self._model.gravity.linear)
