@@ -3,7 +3,9 @@
 from pliant.estimation.direct import DirectEstimator
 from pliant.estimation.filtered import FilteredEstimator
 from pliant.estimation.filters import Butterworth, FirstOrder, LowPass
+from pliant.estimation.identification_poses import identification_poses
 from pliant.estimation.momentum_observer import MomentumObserver
+from pliant.estimation.tool_identification import ToolIdentification, excitation, identify_tool
 from pliant.estimation.wrench import CarriedMass, TouchThresholds, WrenchEstimator
 
 __all__ = [
@@ -14,6 +16,10 @@ __all__ = [
     "FirstOrder",
     "LowPass",
     "MomentumObserver",
+    "ToolIdentification",
     "TouchThresholds",
     "WrenchEstimator",
+    "excitation",
+    "identification_poses",
+    "identify_tool",
 ]
