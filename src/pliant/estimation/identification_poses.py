@@ -11,6 +11,7 @@ from pliant.robot import Robot
 from pliant.spatial import Array, skew
 
 _CANDIDATES = 400
+_REGULAR = 0.25  # least share of the home's smallest singular value that a pose and the way to it may have
 
 
 def identification_poses(
@@ -26,7 +27,8 @@ def identification_poses(
     """Chooses n configurations (n, robot.n), rad, starting at home, in an order that moves little from one to the next.
 
     Only the last joints move, so that the arm stays where its home is; what stands around it is not known here: look at
-    the poses before running them. Among random candidates each pose is the one that adds most to the information about
+    the poses before running them. Poses beyond a singularity are left out, for controllers in task space would have to
+    pass through it. Among random candidates each pose is the one that adds most to the information about
     m c and the moment bias (D-optimal, one at a time).
 
     Args:
@@ -69,14 +71,24 @@ def _candidates(robot: Robot, frame: str, joints: int, share: float, floor: floa
     middle = np.clip(0.5 * (robot.position_lower + robot.position_upper), -np.pi, np.pi)
     half = np.minimum(0.5 * (robot.position_upper - robot.position_lower), np.pi) * share
     draws = middle + half * np.random.default_rng(seed).uniform(-1.0, 1.0, (_CANDIDATES, robot.n))
+    regular = _REGULAR * _smallest_singular_value(robot, data, robot.home, index)
     postures: list[Array] = []
     rotations: list[Array] = []
     for q in [robot.home, *np.where(moving, draws, robot.home)]:
+        way = np.linspace(robot.home, q, 17)[1:]
+        least = min(_smallest_singular_value(robot, data, point, index) for point in way)
         pin.framesForwardKinematics(robot.model, data, q)
-        if data.oMf[index].translation[2] >= floor or not postures:
+        if not postures or (data.oMf[index].translation[2] >= floor and least >= regular):
             postures.append(q)
             rotations.append(np.array(data.oMf[index].rotation))
     return np.array(postures), np.array(rotations)
+
+
+def _smallest_singular_value(robot: Robot, data: pin.Data, q: Array, index: int) -> float:
+    """Of the frame's Jacobian, of its linear part where the robot has fewer than six joints."""
+    J = pin.computeFrameJacobian(robot.model, data, q, index, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
+    rows = J if robot.n >= 6 else J[:3]
+    return float(np.linalg.svd(rows, compute_uv=False)[-1])
 
 
 def _most_informative(g: Array, n: int) -> list[int]:
