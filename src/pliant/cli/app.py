@@ -78,7 +78,9 @@ def run(
     seed: Seed = None,
     out: Out = None,
     set_: Sets = None,
-    live: Annotated[bool, typer.Option("--live", help="Opens a page beside the run, which then follows wall time.")] = False,
+    live: Annotated[
+        bool, typer.Option("--live", help="Opens a page beside the run, which then follows wall time.")
+    ] = False,
 ) -> None:
     """Runs one case: a table, figures, a log and summary.json."""
     from pliant.cli.run import run_command
@@ -111,12 +113,16 @@ def study(
 @app.command()
 @_guarded
 def live(
-    target: Annotated[str, typer.Argument(metavar="[STUDY|CONFIG.toml|FILE.mcap]", help="What to run, or a log to replay.")] = "stack",
+    target: Annotated[
+        str, typer.Argument(metavar="[STUDY|CONFIG.toml|FILE.mcap]", help="What to run, or a log to replay.")
+    ] = "stack",
     case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
     controller: Controller = None,
     robot: RobotOption = None,
     seed: Seed = None,
-    host: Annotated[str, typer.Option(help="Address to listen at. Any but the default lets other machines in, with a token.")] = "127.0.0.1",
+    host: Annotated[
+        str, typer.Option(help="Address to listen at. Any but the default lets other machines in, with a token.")
+    ] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free one.")] = 8080,
     out: Out = None,
     set_: Sets = None,

@@ -29,22 +29,22 @@ def bench_command(console: Console, what: str, file: Path | None) -> None:
 
 
 def _controllers(console: Console) -> dict[str, Any]:
-    from pliant.controllers.benchmark import run
+    from pliant.controllers.benchmark import run as run_stack
+    from pliant.studies.haptic.benchmark import run as run_haptic
 
-    result = run()
-    table = Table(
-        "µs per step",
-        "median",
-        "p90",
-        "p99",
-        "max",
-        title=f"two-task stack on 7 joints, {result['steps']} steps",
-        title_justify="left",
-    )
+    result = run_stack()
+    _print_percentiles(console, f"two-task stack on 7 joints, {result['steps']} steps", result)
+    haptic = run_haptic()
+    title = f"haptic controller on 3 joints (planner, exploration, impedance, torques), {haptic['steps']} steps"
+    _print_percentiles(console, title, haptic)
+    return {**result, "haptic": haptic}
+
+
+def _print_percentiles(console: Console, title: str, result: Mapping[str, Any]) -> None:
+    table = Table("µs per step", "median", "p90", "p99", "max", title=title, title_justify="left")
     for clock in ("cpu", "wall"):
         table.add_row(f"{clock} time", *(f"{result[clock][name]:.1f}" for name in ("median", "p90", "p99", "max")))
     console.print(table)
-    return result
 
 
 def _mpc(console: Console) -> dict[str, Any]:

@@ -65,16 +65,16 @@ TARGET_SEQUENCE = HapticConfig(
 
 DELAY = HapticConfig(
     case="delay",
-    duration=2.5,
+    duration=2.0,
     environment=_ROUGH,
     steps=(
         Step(time=0.0, name="reach", target=(0.10, 0.0, 0.017), force=(0.0, 0.0, 15.0)),
-        Step(time=1.5, name="10 N", force=(0.0, 0.0, 10.0)),
+        Step(time=1.2, name="10 N", force=(0.0, 0.0, 10.0)),
     ),
     checks=(
-        Check(kind="rms", name="force, rms", begin=2.0, wanted=10.0),
-        Check(kind="speed", name="speed at the end", begin=2.0),
-        Check(kind="breaks", name="contact breaks", begin=1.0, wanted=10.0),
+        Check(kind="rms", name="force, rms", begin=1.6, wanted=10.0),
+        Check(kind="speed", name="speed at the end", begin=1.6),
+        Check(kind="breaks", name="contact breaks", begin=0.9, wanted=10.0),
         Check(kind="peak", name="peak force"),
         Check(kind="share", name="|W| over F_max", target=1.0),
     ),

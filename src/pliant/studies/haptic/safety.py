@@ -14,10 +14,8 @@ from pliant.spatial import Array
 from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.script import Wish, wishes
 
-_KNEE_SPEED = 0.05  # m/s at which the foot may cross the knee of the profile: the planner's speeds leave it far behind
-_SAFE_GAIN = (
-    0.5  # k_I over the actuators' bandwidth in rad/s: without a limit cycle on a rigid floor and on a soft ball
-)
+_SAFE_GAIN = 0.5
+"""k_I over the actuators' bandwidth in rad/s: no limit cycle, neither on a rigid floor nor on a soft ball"""
 
 
 def warnings_of(config: HapticConfig, robot: Robot) -> tuple[str, ...]:
@@ -49,7 +47,7 @@ def _gains(config: HapticConfig, robot: Robot) -> list[str]:
                 inertia,
                 shape=config.impedance.profile,
                 torque_bandwidth=None if bandwidth is None else 2.0 * math.pi * bandwidth,
-                speed=_KNEE_SPEED,
+                speed=config.planner.speed,
             )
         )
     return found

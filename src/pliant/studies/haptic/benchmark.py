@@ -1,0 +1,69 @@
+"""How long one step of the haptic controller takes: planner, exploration, impedance and torque map."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+
+from pliant.signals import Estimate
+from pliant.spatial import Array
+from pliant.studies.haptic.build import foot_impedance, references, robot_of
+from pliant.studies.haptic.cases import CASES
+
+_STIFFNESS = 6000.0  # N/m of the synthetic contact
+
+
+def run(n: int = 20000) -> dict[str, Any]:
+    """Times steps of the floor case's controller against a synthetic contact, so that nothing else is timed.
+
+    The foot presses throughout and its targets move it to and fro, so that planner, exploration and phases work as
+    they do in use.
+
+    Args:
+        n: steps that count; a tenth more warm up first.
+
+    Returns:
+        CPU and wall time per step in µs: {"steps", "unit", "cpu": {"median", "p90", "p99", "max"}, "wall": {...}}. Run
+        it with OMP_NUM_THREADS=1 on an idle machine.
+    """
+    config = CASES["floor"]
+    config = config.model_copy(update={"steps": _to_and_fro(n * config.period)})
+    robot = robot_of(config)
+    source, controller = references(config, robot), foot_impedance(robot, config)
+    zero, warm_up = np.zeros(robot.n), max(n // 10, 1)
+    first = Estimate(-warm_up * config.period, robot.home, zero, zero, zero, {config.frame: np.zeros(6)})
+    ref, ctl = source.init(first), controller.init(first)
+    cpu, wall = np.empty(n), np.empty(n)
+    offset = 0.0
+    for k in range(-warm_up, n):
+        t = config.period * k
+        force = np.array([0.0, 0.0, max(20.0 - _STIFFNESS * offset + np.sin(300.0 * t), 0.0), 0.0, 0.0, 0.0])
+        q = robot.home + 0.002 * np.sin(7.0 * t + np.arange(robot.n))
+        estimate = Estimate(t, q, zero, zero, zero, {config.frame: force})
+        wall_start, cpu_start = time.perf_counter_ns(), time.thread_time_ns()
+        reference, ref = source.step(estimate, ref)
+        _, ctl = controller.step(estimate, reference, ctl)
+        cpu_end, wall_end = time.thread_time_ns(), time.perf_counter_ns()
+        offset = float(np.asarray(reference.diagnostics.get(f"exploration/{config.frame}/offset", np.zeros(3)))[2])
+        if k >= 0:
+            cpu[k], wall[k] = 1e-3 * (cpu_end - cpu_start), 1e-3 * (wall_end - wall_start)
+    return {"steps": n, "unit": "µs", "cpu": _percentiles(cpu), "wall": _percentiles(wall)}
+
+
+def _to_and_fro(duration: float) -> tuple[Any, ...]:
+    """The floor case's first step, then a target and a force that change twice a second."""
+    first = CASES["floor"].steps[0]
+    later = [
+        first.model_copy(
+            update={"time": 0.5 * i, "target": (0.05 + 0.1 * (i % 2), 0.0, 0.017), "force": (0.0, 0.0, 30.0 + i % 3)}
+        )
+        for i in range(1, int(2.0 * duration) + 2)
+    ]
+    return first, *later
+
+
+def _percentiles(times: Array) -> dict[str, float]:
+    median, p90, p99 = np.percentile(times, [50, 90, 99])
+    return {"median": float(median), "p90": float(p90), "p99": float(p99), "max": float(times.max())}
