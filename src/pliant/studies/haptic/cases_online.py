@@ -96,4 +96,21 @@ RANDOM = HapticConfig(
     ),
 )
 
-ONLINE_CASES = (ONLINE, DELAY, TARGET_SEQUENCE, RANDOM)
+PARAMETERS = HapticConfig(
+    case="parameters",
+    duration=2.4,
+    environment=_ROUGH,
+    steps=(
+        Step(time=0.0, name="reach", target=(0.06, 0.0, 0.018), force=(0.0, 0.0, 10.0)),
+        Step(time=1.4, name="15 N", force=(0.0, 0.0, 15.0)),
+        Step(time=1.9, name="10 N", force=(0.0, 0.0, 10.0)),
+    ),
+    checks=(
+        Check(kind="settle", name="up", begin=1.4, end=1.9, wanted=15.0, before=10.0),
+        Check(kind="settle", name="down", begin=1.9, wanted=10.0, before=15.0),
+        Check(kind="peak", name="peak force", end=1.4),
+        Check(kind="share", name="|W| over F_max", target=1.0),
+    ),
+)
+
+ONLINE_CASES = (ONLINE, DELAY, TARGET_SEQUENCE, RANDOM, PARAMETERS)

@@ -11,15 +11,17 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from pliant.controllers.attractor import Law
 from pliant.controllers.profiles import Shape
-from pliant.errors import PliantError
+from pliant.errors import PliantError, options
 from pliant.references.exploration_config import ExplorationConfig
 from pliant.signals import ImpedanceTuning
 from pliant.studies.base import CaseConfig
 from pliant.studies.config import Config
+
+CONTROLLERS = ("haptic", "haptic-paper", "haptic-hold")
 
 Vector = tuple[float, float, float]
 NotNegative = Annotated[float, Field(ge=0.0)]
@@ -196,7 +198,7 @@ class Check(Config):
 class HapticConfig(CaseConfig):
     """One run of the leg."""
 
-    controller: Literal["haptic", "haptic-paper", "haptic-hold"] = Field(
+    controller: str = Field(
         default="haptic",
         description="haptic: pliant's; haptic-paper: as printed, but for the planner; haptic-hold: impedance alone",
     )
@@ -219,6 +221,13 @@ class HapticConfig(CaseConfig):
     random: bool = Field(default=False, description="draw surface, masses and force from the seed")
     checks: tuple[Check, ...] = Field(default=(), description="what the run is judged by")
     snapshots: tuple[float, ...] = quantity((), "s", "moments that are drawn")
+
+    @field_validator("controller")
+    @classmethod
+    def _is_known(cls, name: str) -> str:
+        if name not in CONTROLLERS:
+            raise ValueError(f"this study has no controller {name!r}; {options(CONTROLLERS, name)}")
+        return name
 
     @model_validator(mode="after")
     def _is_in_order(self) -> Self:

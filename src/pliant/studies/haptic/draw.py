@@ -15,6 +15,7 @@ from pliant.studies.base import Experiment, Result
 from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.delays import delay_figure
 from pliant.studies.haptic.measure import Signals
+from pliant.studies.haptic.parameters import parameter_figure
 from pliant.studies.runner import file_stem
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, style, time_series
@@ -111,7 +112,10 @@ def _thinned(points: Array, most: int = 300) -> Array:
 
 
 def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
-    """The delays that each environment bears, if they were run."""
-    if not any(result.config.case == "delay" and result.config.variant for result in results):
-        return []
-    return [save(delay_figure(results), folder / "delay.png")]
+    """The delays that each environment bears, and what each parameter does, where they were run."""
+    drawn: list[Path] = []
+    for case, make in (("delay", delay_figure), ("parameters", parameter_figure)):
+        found = [result for result in results if result.config.case == case and result.config.variant]
+        if found:
+            drawn.append(save(make(found), folder / f"{case}.png"))
+    return drawn

@@ -9,9 +9,10 @@ from pliant.studies.base import Experiment, Result, Study
 from pliant.studies.haptic import draw
 from pliant.studies.haptic.build import build
 from pliant.studies.haptic.cases import CASES
-from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.config import CONTROLLERS, HapticConfig
 from pliant.studies.haptic.delays import delay_runs
 from pliant.studies.haptic.measure import measure
+from pliant.studies.haptic.parameters import parameter_runs
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -25,7 +26,7 @@ class HapticStudy(Study[HapticConfig]):
     name = "haptic"
     title = "haptic exploration with a three-joint leg (Tiseo et al. 2021)"
     cases = CASES
-    controllers = ("haptic", "haptic-paper", "haptic-hold")
+    controllers = CONTROLLERS
 
     def build(self, config: HapticConfig) -> Experiment:
         return build(config)
@@ -34,6 +35,8 @@ class HapticStudy(Study[HapticConfig]):
         config = self.case(case)
         if case == "delay":
             return [config, *delay_runs(config)]
+        if case == "parameters":
+            return [config, *parameter_runs(config)]
         count = 1
         if config.random or config.online is not None:
             count = seeds or (_RANDOM_SCENES if config.random else _ONLINE_SEEDS)

@@ -1,0 +1,80 @@
+"""What each parameter does: the same steps on a rigid floor and on a soft ball, one parameter changed at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from pliant.studies.base import Result
+from pliant.studies.config import merged, parse_assignments
+from pliant.studies.haptic.config import HapticConfig, Material
+from pliant.telemetry.plots import style
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter and the values that are tried."""
+
+    key: str
+    """as in `--set`; {} is where the value goes"""
+    label: str
+    values: tuple[float, ...]
+
+
+PARAMETERS: tuple[Parameter, ...] = (
+    Parameter("exploration.gain={}", "gain k_I, 1/s", (10.0, 25.0, 45.0, 100.0)),
+    Parameter("exploration.speed={}", "speed v_max, m/s", (0.02, 0.05, 0.15, 0.5)),
+    Parameter("exploration.stiffness_floor={}", "stiffness_floor, N/m", (100.0, 300.0, 1000.0, 6000.0)),
+    Parameter("exploration.window={}", "window, s", (0.005, 0.01, 0.02, 0.06)),
+    Parameter("impedance.stiffness=[6000.0, 6000.0, {}]", "K_0 along z, N/m", (2000.0, 4000.0, 8000.0, 12000.0)),
+    Parameter("impedance.range=[0.025, 0.025, {}]", "x_b along z, m", (0.005, 0.010, 0.015, 0.025)),
+    Parameter("impedance.force_max=[150.0, 150.0, {}]", "F_max along z, N", (12.0, 18.0, 50.0, 300.0)),
+    Parameter("planner.speed={}", "planner's speed, m/s", (0.05, 0.1, 0.2, 0.4)),
+)
+SURFACES: Mapping[str, Material] = {"rigid": Material(), "soft": Material(stiffness=1e3, damping=1e2)}
+
+
+def parameter_runs(config: HapticConfig) -> list[HapticConfig]:
+    """Every parameter's values on every surface."""
+    runs: list[HapticConfig] = []
+    for surface, material in SURFACES.items():
+        ground = merged(config, {"environment": {"floor": {"material": material.model_dump()}}})
+        for parameter in PARAMETERS:
+            for value in parameter.values:
+                changed = merged(ground, parse_assignments([parameter.key.format(value)]))
+                runs.append(changed.model_copy(update={"variant": f"{surface} · {parameter.label} · {value:g}"}))
+    return runs
+
+
+def parameter_figure(results: Sequence[Result]) -> Figure:
+    """Settling time of a force step up and down and peak force at first contact, against each parameter."""
+    found = {r.config.variant: {m.name: m.value for m in r.metrics} for r in results if r.config.variant}
+    made = style.figure(10.0, 8.4, "What each parameter does: steps from 10 to 15 N and back to 10 N")
+    axes = made.subplots(4, 4)
+    for index, parameter in enumerate(PARAMETERS):
+        row, column = 2 * (index // 4), index % 4
+        _panel(axes[row, column], parameter, found, "settle, s", ("up", "down"))
+        _panel(axes[row + 1, column], parameter, found, "first contact, N", ("peak force",))
+    return made
+
+
+def _panel(
+    ax: Axes, parameter: Parameter, found: Mapping[str, Mapping[str, float]], ylabel: str, names: Sequence[str]
+) -> None:
+    style.dress(ax, parameter.label, ylabel)
+    ax.set_xscale("log")
+    x = np.array(parameter.values)
+    for index, (surface, name) in enumerate((s, n) for s in SURFACES for n in names):
+        y = np.array([found.get(f"{surface} · {parameter.label} · {v:g}", {}).get(name, np.nan) for v in x])
+        colour, finite = style.colour(index), np.isfinite(y)
+        ax.plot(
+            x[finite], y[finite], "o-", color=colour, linewidth=style.LINE, markersize=3.2, label=f"{surface}, {name}"
+        )
+        never = x[~finite]
+        ax.plot(never, np.full(never.shape, 0.97 - 0.05 * index), "x", color=colour, transform=ax.get_xaxis_transform())
+    ax.set_ylim(bottom=0.0)
+    style.legend(ax)
