@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from pliant import __version__
@@ -56,9 +57,9 @@ def doctor_command(console: Console, config: Path | None) -> None:
         table.add_row(name, version or "–", "✓" if version else "✗ missing: pip install pliant")
     for name, use in _OPTIONAL.items():
         version = _version(name)
-        table.add_row(name, version or "–", "✓" if version else use)
+        table.add_row(name, version or "–", "✓" if version else escape(use))
     for name in _COMPILED:
-        table.add_row(f"compiled core {name}", *_compiled(name))
+        table.add_row(f"compiled core {name}", *map(escape, _compiled(name)))
     table.add_row("off-screen pictures", *_rendering())
     console.print(table)
 
