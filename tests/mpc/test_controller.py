@@ -187,3 +187,20 @@ def test_a_task_without_orientation_leaves_it_free() -> None:
         torques[name] = controller.step(_estimate(q=start), reference, controller.init(_estimate(q=start)))[0].torque
     np.testing.assert_allclose(torques["free"], torques["met"], atol=1e-3)
     assert np.max(np.abs(torques["wanted"] - torques["met"])) > 0.1
+
+
+def test_torque_bounds_are_planned_with_instead_of_clamped() -> None:
+    """Control arm: without bounds the same wish is cut off by the clamp."""
+    weak = polishing_arm()
+    limit = np.abs(_gravity(ROBOT.home)) + 5.0
+    weak.model.upperEffortLimit = limit
+    taken = {}
+    for bounded in (False, True):
+        controller = MpcController(weak, ForceFeedbackMpc.model_validate({"bounds": {"torque": bounded}}))
+        command, state = controller.step(_estimate(), _reference(offset=0.2), controller.init(_estimate()))
+        taken[bounded] = float(np.max(np.abs(command.clamped)))
+        assert np.all(np.abs(command.torque) <= limit)
+        if bounded:
+            assert np.max(np.abs(state.solver.us) - limit) < 1e-3
+    assert taken[True] < 1e-3
+    assert taken[False] > 1.0
