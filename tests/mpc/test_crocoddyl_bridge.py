@@ -145,6 +145,13 @@ def test_friction_cone_is_refused() -> None:
         shooting_problem(problem, solver.nodes, np.zeros(15), constraints=True)
 
 
+def test_force_bounds_on_a_rigid_contact_are_refused() -> None:
+    settings = config("classical", 1, bounds={"force_max": 80.0}, phases={"circle": {"contact": True}})
+    problem, _, solver = posed(polishing_arm(), settings, OFFSET, 0.0)
+    with pytest.raises(ConfigError, match="only where it is a state"):
+        shooting_problem(problem, solver.nodes, np.zeros(12), constraints=True)
+
+
 def test_without_the_extra_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "crocoddyl", None)
     monkeypatch.delitem(sys.modules, "pliant.mpc.crocoddyl_bridge")

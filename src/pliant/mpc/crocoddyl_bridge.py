@@ -43,10 +43,16 @@ def shooting_problem(
         A `crocoddyl.ShootingProblem` of the same cost, dynamics and derivatives.
 
     Raises:
-        ConfigError: bounds that the bridge does not know (friction cone).
+        ConfigError: bounds that the bridge does not know (friction cone; force bounds where the force is no state).
     """
-    if constraints and problem.config.bounds.friction is not None:
+    bounds = problem.config.bounds
+    if constraints and bounds.friction is not None:
         raise ConfigError("the crocoddyl bridge has torque and force bounds, but no friction cone")
+    if constraints and bounds.force_max is not None and problem.config.kind != "force_feedback":
+        raise ConfigError(
+            "the crocoddyl bridge bounds the force only where it is a state (kind 'force_feedback'), got kind"
+            f" {problem.config.kind!r} with force_max = {bounds.force_max:g} N: leave force_max out"
+        )
     count = problem.config.horizon + 1
     actions: list[Any] = []
     for index in range(count):
