@@ -47,6 +47,20 @@ class Measurement:
 
 
 @dataclass(frozen=True, slots=True)
+class Environment:
+    """How the environment is believed to give way along a contact's normal. Each `…_std` is a standard uncertainty."""
+
+    stiffness: float
+    """K, N/m"""
+    damping: float
+    """B, N·s/m"""
+    stiffness_std: float
+    """N/m"""
+    damping_std: float
+    """N·s/m; infinite where the motion does not tell"""
+
+
+@dataclass(frozen=True, slots=True)
 class Estimate:
     """What the robot believes: the measurement filtered, compensated and completed."""
 
@@ -65,6 +79,8 @@ class Estimate:
     """frame → whether it is believed to touch something"""
     disturbance: Array | None = None
     """(n,) joint torque that the model does not explain, N·m, where an observer runs"""
+    environments: Mapping[str, Environment] = field(default_factory=_nothing)
+    """frame → stiffness and damping of what it touches, where they are estimated"""
 
 
 @dataclass(frozen=True, slots=True)
