@@ -1,6 +1,8 @@
 """What the robot believes about itself and about its contacts."""
 
 from pliant.estimation.direct import DirectEstimator
+from pliant.estimation.environment import EnvironmentEstimator
+from pliant.estimation.environment_fit import EnvironmentFit, FitConfig
 from pliant.estimation.filtered import FilteredEstimator
 from pliant.estimation.filters import Butterworth, FirstOrder, LowPass
 from pliant.estimation.identification_poses import identification_poses
@@ -12,8 +14,11 @@ __all__ = [
     "Butterworth",
     "CarriedMass",
     "DirectEstimator",
+    "EnvironmentEstimator",
+    "EnvironmentFit",
     "FilteredEstimator",
     "FirstOrder",
+    "FitConfig",
     "LowPass",
     "MomentumObserver",
     "ToolIdentification",

@@ -1,0 +1,80 @@
+"""Adds the belief about the environment's stiffness and damping to another estimator."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from pliant.estimation.environment_fit import EnvironmentFit, FitConfig, FitState
+from pliant.estimation.momentum_observer import unit_vector
+from pliant.interfaces import Estimator
+from pliant.robot import Robot
+from pliant.signals import Estimate, Measurement
+
+
+@dataclass(frozen=True, slots=True)
+class EnvironmentState:
+    """State of the inner estimator and of the fit."""
+
+    inner: Any
+    fit: FitState
+
+
+class EnvironmentEstimator(Estimator[EnvironmentState]):
+    """Fills `Estimate.environments` for one contact frame, from its normal force and its motion.
+
+    Source of the idea: [FFMPC] Kleff et al. 2024, sec. VIII-B, names the online estimation of the K and B of its eq. 16
+    as a way to go; the method is plain least squares, see `EnvironmentFit`.
+
+    Args:
+        inner: reports the contact wrench of the frame.
+        robot: kinematics.
+        frame: that touches.
+        period: s between two measurements.
+        normal: (3,) outward normal of the surface in the world. It must be the surface's: what slides along a surface
+            and is measured along another direction moves without force.
+        config: how the fit forgets and when it learns.
+
+    Raises:
+        RobotError: a frame that the robot does not have.
+        ConfigError: a normal without length, or a cutoff above half the sampling rate.
+    """
+
+    def __init__(
+        self,
+        inner: Estimator[Any],
+        robot: Robot,
+        frame: str,
+        period: float,
+        *,
+        normal: npt.ArrayLike = (0.0, 0.0, 1.0),
+        config: FitConfig | None = None,
+    ) -> None:
+        self.inner, self.robot, self.frame = inner, robot, frame
+        self.normal = unit_vector(normal, "normal")
+        self.fit = EnvironmentFit(config or FitConfig(), period)
+        self._frame = robot.frame_id(frame)
+        self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
+
+    def init(self, measurement: Measurement) -> EnvironmentState:
+        return EnvironmentState(self.inner.init(measurement), FitState())
+
+    def step(self, measurement: Measurement, state: EnvironmentState) -> tuple[Estimate, EnvironmentState]:
+        estimate, inner = self.inner.step(measurement, state.inner)
+        wrench = estimate.wrenches.get(self.frame)
+        fit = state.fit
+        if wrench is not None:
+            model, data = self.robot.model, self._data
+            pin.forwardKinematics(model, data, measurement.q, measurement.v)
+            position = pin.updateFramePlacement(model, data, self._frame).translation
+            axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+            velocity = pin.getFrameVelocity(model, data, self._frame, axes).linear
+            depth, rate = -float(self.normal @ position), -float(self.normal @ velocity)
+            fit = self.fit.step(float(self.normal @ np.asarray(wrench[:3])), depth, rate, fit)
+        if fit.found is not None:
+            estimate = replace(estimate, environments={**estimate.environments, self.frame: fit.found})
+        return estimate, EnvironmentState(inner, fit)

@@ -1,0 +1,131 @@
+"""Stiffness and damping of what a robot touches, from force and motion: recursive least squares with forgetting."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from pliant.configuration import Config
+from pliant.estimation.filters import Butterworth, Memory
+from pliant.signals import Environment
+from pliant.spatial import Array
+
+
+@dataclass(frozen=True, slots=True)
+class FitState:
+    """What the fit remembers. The signals are depth, its rate, and force: m, m/s, N."""
+
+    reference: Array | None = None
+    """(3,) signals at first touch, taken off all others against rounding; None out of contact"""
+    filter: Memory | None = None
+    accepted: Array | None = None
+    """(3,) filtered signals that were used last"""
+    count: int = 0
+    """samples used since first touch"""
+    mean: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) exponentially weighted"""
+    covariance: Array = field(default_factory=lambda: np.zeros((3, 3)))
+    """(3, 3) exponentially weighted"""
+    found: Environment | None = None
+    """the last belief that was accurate enough; survives the contact"""
+
+
+class FitConfig(Config):
+    """How the fit forgets and when it learns."""
+
+    memory: float = 300.0
+    """samples after which an old one counts 1/e; only samples that are used count, so that standstill erases nothing"""
+    cutoff: float = 50.0
+    """Hz of the Butterworth filter that all three signals pass alike, which leaves their relation as it is"""
+    touch: float = 2.0
+    """N above which there is contact"""
+    least_force: float = 0.1
+    """N that the force must have changed since the last sample that was used; a few times its noise after the filter"""
+    least_motion: float = 1e-7
+    """m that the depth must have changed since then; above the position noise after the filter"""
+    least_samples: int = 40
+    """samples before the first belief"""
+    accuracy: float = 0.2
+    """largest relative standard uncertainty of K in a belief that is shown"""
+
+
+class EnvironmentFit:
+    """F = K p + B ṗ + c along the normal, with depth p from an unknown zero.
+
+    Least squares over (p, ṗ, 1) with exponential forgetting, in the form of weighted means and covariances, which
+    eliminates c and neither winds up nor loses digits between 3e2 and 1e6 N/m. Samples count only when force and motion
+    have changed: without that gate a robot at rest would replace what it learnt by noise.
+
+    Motion noise σ_p pulls K towards zero by the factor 1/(1 + σ_p²/var p) (errors in variables); a force that is δ s
+    older than the motion shifts B by −K δ.
+
+    Args:
+        config: see there.
+        period: s between two samples.
+    """
+
+    def __init__(self, config: FitConfig, period: float) -> None:
+        self.config = config
+        self._filter = Butterworth(config.cutoff, period)
+        # Neighbouring samples share noise after the filter (its noise bandwidth is 1.11 f_c).
+        self._correlated = max(1.0, 1.0 / (2.22 * config.cutoff * period))
+
+    def step(self, force: float, depth: float, rate: float, state: FitState) -> FitState:
+        """One sample.
+
+        Args:
+            force: N, normal, positive where the environment pushes.
+            depth: m along the inward normal, from any fixed zero.
+            rate: m/s of the depth.
+            state: of the step before.
+        """
+        if force < self.config.touch:
+            return FitState(found=state.found)
+        signals = np.array([depth, rate, force])
+        if state.reference is None:
+            state = replace(state, reference=signals, filter=self._filter.init(np.zeros(3)))
+        assert state.reference is not None
+        assert state.filter is not None
+        value, memory = self._filter.step(signals - state.reference, state.filter)
+        state = replace(state, filter=memory)
+        return self._learn(value, state) if self._informative(value, state) else state
+
+    def _informative(self, value: Array, state: FitState) -> bool:
+        if state.accepted is None:
+            return True
+        moved = np.abs(value - state.accepted)
+        return bool(moved[2] >= self.config.least_force and moved[0] >= self.config.least_motion)
+
+    def _learn(self, value: Array, state: FitState) -> FitState:
+        count = state.count + 1
+        share = max(1.0 / count, 1.0 / self.config.memory)
+        off = value - state.mean
+        mean = state.mean + share * off
+        covariance = (1.0 - share) * (state.covariance + share * np.outer(off, off))
+        found = self._solve(covariance, count, share) if count >= self.config.least_samples else None
+        return replace(state, accepted=value, count=count, mean=mean, covariance=covariance, found=found or state.found)
+
+    def _solve(self, covariance: Array, count: int, share: float) -> Environment | None:
+        """K and B with their uncertainties; None where the data do not tell K."""
+        independent = min(float(count), 2.0 / share - 1.0) / self._correlated
+        for columns in ([0, 1], [0]):  # a damping below zero is none
+            A, b = covariance[np.ix_(columns, columns)], covariance[columns, 2]
+            scale = np.sqrt(np.diag(A))
+            if not np.all(scale > 0.0):
+                continue
+            correlation = A / np.outer(scale, scale)
+            if np.linalg.det(correlation) < 1e-6:
+                continue
+            inverse = np.linalg.inv(correlation) / np.outer(scale, scale)
+            gains = inverse @ b
+            if gains[-1] < 0.0:
+                continue
+            residual = max(float(covariance[2, 2] - gains @ b), 0.0)
+            std = np.sqrt(residual * np.diag(inverse) / max(independent - 3.0, 1.0))
+            if std[0] > self.config.accuracy * gains[0]:
+                return None
+            damping, damping_std = (gains[1], std[1]) if len(columns) == 2 else (0.0, math.inf)
+            return Environment(float(gains[0]), float(damping), float(std[0]), float(damping_std))
+        return None
