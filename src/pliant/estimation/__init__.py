@@ -3,6 +3,7 @@
 from pliant.estimation.direct import DirectEstimator
 from pliant.estimation.environment import EnvironmentEstimator
 from pliant.estimation.environment_fit import EnvironmentFit, FitConfig
+from pliant.estimation.external_torque import ExternalTorqueEstimator
 from pliant.estimation.filtered import FilteredEstimator
 from pliant.estimation.filters import Butterworth, FirstOrder, LowPass
 from pliant.estimation.identification_poses import identification_poses
@@ -16,6 +17,7 @@ __all__ = [
     "DirectEstimator",
     "EnvironmentEstimator",
     "EnvironmentFit",
+    "ExternalTorqueEstimator",
     "FilteredEstimator",
     "FirstOrder",
     "FitConfig",
