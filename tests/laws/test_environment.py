@@ -123,6 +123,25 @@ def test_position_noise_biases_as_documented() -> None:
     assert expected < 0.9 * K
 
 
+def hidden(K: float, config: FitConfig, sigma: float = 2e-4) -> float | None:
+    """K found from a depth with white noise of `sigma` m, a force of 20 ± 8 N."""
+    t = np.arange(0.0, 4.0, PERIOD)
+    p, rate = (20.0 + 8.0 * np.sin(20.0 * t)) / K, 160.0 * np.cos(20.0 * t) / K
+    depth = p + sigma * np.random.default_rng(3).normal(size=t.size)
+    found = run(EnvironmentFit(config, PERIOD), zip(K * p, depth, rate, strict=True))[-1].found
+    return None if found is None else found.stiffness
+
+
+def test_known_noise_does_not_bias_and_hides_what_it_hides() -> None:
+    config = FitConfig(memory=3000.0, cutoff=100.0, least_motion=0.0)
+    knowing = config.model_copy(update={"noise_depth": 2e-4})
+    assert hidden(1e4, knowing) == pytest.approx(1e4, rel=0.02)
+    assert hidden(1e6, knowing) is None  # 8 µm behind 0.2 mm
+    blind = hidden(1e4, config)  # control arm
+    assert blind is not None
+    assert blind < 0.98 * 1e4
+
+
 class Pump(ReferenceSource[None]):
     """Presses on a table, deeper and less deep."""
 

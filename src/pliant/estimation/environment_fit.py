@@ -45,6 +45,10 @@ class FitConfig(Config):
     """N that the force must have changed since the last sample that was used; a few times its noise after the filter"""
     least_motion: float = 1e-7
     """m that the depth must have changed since then; above the position noise after the filter"""
+    noise_depth: float = 0.0
+    """m, standard deviation of the depth before the filter; see `EnvironmentFit`"""
+    noise_rate: float = 0.0
+    """m/s, the same of its rate"""
     least_samples: int = 40
     """samples before the first belief"""
     accuracy: float = 0.2
@@ -58,8 +62,10 @@ class EnvironmentFit:
     eliminates c and neither winds up nor loses digits between 3e2 and 1e6 N/m. Samples count only when force and motion
     have changed: without that gate a robot at rest would replace what it learnt by noise.
 
-    Motion noise σ_p pulls K towards zero by the factor 1/(1 + σ_p²/var p) (errors in variables); a force that is δ s
-    older than the motion shifts B by −K δ.
+    Motion noise pulls K towards zero by the factor 1/(1 + σ_p²/var p), σ_p after the filter (errors in variables). With
+    its standard deviation given, its variance is taken off var p, which removes the pull, and a contact whose motion
+    does not stand out of the noise (var p < 3 σ_p²) is not identified at all. A force that is δ s older than the motion
+    shifts B by −K δ.
 
     Args:
         config: see there.
@@ -69,8 +75,11 @@ class EnvironmentFit:
     def __init__(self, config: FitConfig, period: float) -> None:
         self.config = config
         self._filter = Butterworth(config.cutoff, period)
-        # Neighbouring samples share noise after the filter (its noise bandwidth is 1.11 f_c).
-        self._correlated = max(1.0, 1.0 / (2.22 * config.cutoff * period))
+        passed = min(1.0, 2.22 * config.cutoff * period)  # share of white noise's variance: noise bandwidth 1.11 f_c
+        self._correlated = 1.0 / passed
+        """neighbouring samples that share their noise after the filter"""
+        self._noise = passed * np.diag([config.noise_depth**2, config.noise_rate**2])
+        """(2, 2) covariance of the motion's noise after the filter"""
 
     def step(self, force: float, depth: float, rate: float, state: FitState) -> FitState:
         """One sample.
@@ -110,8 +119,11 @@ class EnvironmentFit:
     def _solve(self, covariance: Array, count: int, share: float) -> Environment | None:
         """K and B with their uncertainties; None where the data do not tell K."""
         independent = min(float(count), 2.0 / share - 1.0) / self._correlated
+        told = covariance - np.pad(self._noise, (0, 1))
         for columns in ([0, 1], [0]):  # a damping below zero is none
-            A, b = covariance[np.ix_(columns, columns)], covariance[columns, 2]
+            if any(told[i, i] < 2.0 * self._noise[i, i] for i in columns):
+                continue
+            A, b = told[np.ix_(columns, columns)], told[columns, 2]
             scale = np.sqrt(np.diag(A))
             if not np.all(scale > 0.0):
                 continue
