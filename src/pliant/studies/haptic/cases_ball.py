@@ -68,27 +68,27 @@ _LIGHT = (8.0, 12.0, 5.0)  # N, on a ball that gives way above and below
 
 BALL_FREE = HapticConfig(
     case="ball-free",
-    duration=12.8,
+    duration=13.8,
     environment=_FREE,
     exploration=_BRISK,
     start=_ABOVE,
     steps=(
         *_steps(_LIGHT),
         Step(time=5.0, name="lift", target=(_X, 0.0, 0.27), force=(0.0, 0.0, 0.0)),
-        Step(time=5.6, name="behind", target=(-0.06, 0.0, 0.20)),
-        Step(time=6.8, name="down", target=(-0.06, 0.0, 0.08)),
-        Step(time=7.6, name="kick", target=(0.25, 0.0, 0.06)),
-        Step(time=8.6, name="stretch", target=(0.42, 0.0, 0.04)),  # m, beyond the straight leg: through the singularity
-        Step(time=9.6, name="return", target=(0.10, 0.0, 0.15)),
+        Step(time=5.8, name="over", target=(0.30, 0.0, 0.27)),
+        Step(time=7.3, name="kick", target=(0.30, 0.0, 0.08)),  # the shank comes down on the ball
+        Step(time=8.9, name="stretch", target=(0.44, 0.0, 0.06)),  # m, 13 mm beyond the straight leg
+        Step(time=10.4, name="return", target=(0.10, 0.0, 0.15)),
     ),
     checks=(
         *_checks(_LIGHT, (0.15, 0.15, 0.3)),
         Check(kind="link", name="peak force on the shank"),
-        Check(kind="speed", name="foot speed at the end", begin=12.6, target=0.1),
-        Check(kind="return", name="position error at the end", begin=12.6, target=1.0),
+        Check(kind="knee", name="knee off straight, least", begin=8.9, target=5.0),
+        Check(kind="speed", name="foot speed at the end", begin=13.6, target=0.1),
+        Check(kind="return", name="position error at the end", begin=13.6, target=1.0),
         Check(kind="share", name="|W| over F_max", target=1.0),
     ),
-    snapshots=(0.0, 3.9, 7.5, 8.2, 9.5, 12.7),
+    snapshots=(0.0, 3.9, 7.2, 8.3, 10.3, 13.7),
 )
 
 _REACHABLE = 32.3  # N: (x_b + p) K_e K_0/(K_e + K_0) with p = 10 mm, K_e = 1e3 N/m, K_0 = 12e3 N/m

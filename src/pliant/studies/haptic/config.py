@@ -182,6 +182,7 @@ class Check(Config):
         "speed",
         "over",
         "link",
+        "knee",
         "reachable",
         "share",
     ] = Field(description="what is measured; see `pliant.studies.haptic.measure`")

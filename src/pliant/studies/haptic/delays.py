@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from pliant.spatial import Array
 from pliant.studies.base import Result
 from pliant.studies.config import merged
 from pliant.studies.haptic.config import HapticConfig, Material
-from pliant.telemetry.plots import sweep
+from pliant.telemetry.plots import style
 
 DELAYS = (1, 2, 3, 5, 8, 12, 20, 30, 50)
 """ms"""
@@ -20,25 +20,30 @@ SURFACES: Mapping[str, Material] = {
     "firm, 1e4 N/m": Material(stiffness=1e4, damping=4.6e2),
     "soft, 1e3 N/m": Material(stiffness=1e3, damping=1e2),
 }
-PLACES: Mapping[str, tuple[str, ...]] = {
-    "force": ("force_delay",),
-    "command": ("command_delay",),
-    "both": ("force_delay", "command_delay"),
+_SOFT_IMPEDANCE = {"stiffness": (375.0, 375.0, 750.0), "force_max": (10.0, 10.0, 20.0)}  # N/m, N
+PLACES: Mapping[str, tuple[tuple[str, ...], dict[str, Any]]] = {
+    "force signal": (("force_delay",), {}),
+    "command": (("command_delay",), {}),
+    "both": (("force_delay", "command_delay"), {}),
+    "both, K_0 / 16": (("force_delay", "command_delay"), {"impedance": _SOFT_IMPEDANCE}),
+    "both, damped joints": (("force_delay", "command_delay"), {"hardware": {"joint_damping": 11.46}}),
 }
+"""where the delay is → what is late, and what else changes: 16 times less stiffness, or experiment 4's damping"""
 _STEADY_FORCE = 1.0  # N rms over the last half second: a tenth of the force that is asked for
 _STEADY_SPEED = 0.05  # m/s
+_BOUNDED_FORCE = 300.0  # N, F_max along z: what hits harder was not kept in bounds
 
 
 def delay_runs(config: HapticConfig) -> list[HapticConfig]:
     """Every surface, place and delay."""
     runs: list[HapticConfig] = []
     for surface, material in SURFACES.items():
-        for place, fields in PLACES.items():
+        for place, (fields, more) in PLACES.items():
             for delay in DELAYS:
-                hardware = dict.fromkeys(fields, 1e-3 * delay)
                 changes = {
+                    **more,
                     "environment": {"floor": {"material": material.model_dump()}},
-                    "hardware": hardware,
+                    "hardware": {**more.get("hardware", {}), **dict.fromkeys(fields, 1e-3 * delay)},
                     "variant": f"{surface} · {place} · {delay} ms",
                 }
                 runs.append(merged(config, changes))
@@ -46,12 +51,12 @@ def delay_runs(config: HapticConfig) -> list[HapticConfig]:
 
 
 def stable(result: Result) -> bool:
-    """Whether a run kept its force, its contact and its rest."""
+    """Whether a run came to rest at its force and never hit harder than F_max."""
     values = {metric.name: metric.value for metric in result.metrics}
     if result.failure is not None or not values:
         return False
     calm = values["force, rms"] <= _STEADY_FORCE and values["speed at the end"] <= _STEADY_SPEED
-    return calm and values["|W| over F_max"] <= 1.0
+    return calm and values["peak force"] <= _BOUNDED_FORCE and values["|W| over F_max"] <= 1.0
 
 
 def largest_stable(results: Sequence[Result]) -> dict[tuple[str, str], float]:
@@ -70,20 +75,18 @@ def largest_stable(results: Sequence[Result]) -> dict[tuple[str, str], float]:
 
 
 def delay_figure(results: Sequence[Result]) -> Figure:
-    """Force error against the delay; runs that are not stable are crosses at the upper edge."""
-    by_variant = {r.config.variant: r for r in results if r.config.case == "delay" and r.config.variant}
+    """The largest stable delay as bars, a group per surface."""
     largest = largest_stable(results)
-    curves: dict[str, Array] = {}
-    for surface in SURFACES:
-        for place in PLACES:
-            label = f"{surface}; {place}: ≤ {largest[surface, place]:g} ms"
-            curves[label] = np.array([_error(by_variant, f"{surface} · {place} · {delay} ms") for delay in DELAYS])
-    title = "Largest delay that stays stable and bounded, per environment"
-    return sweep(np.array(DELAYS, float), curves, "delay, ms", "force error, N rms", title, log_x=True)
-
-
-def _error(results: Mapping[str, Result], variant: str) -> float:
-    result = results.get(variant)
-    if result is None or not stable(result):
-        return np.nan
-    return next(metric.value for metric in result.metrics if metric.name == "force, rms")
+    made = style.figure(8.0, 3.8, "Largest delay that stays stable and bounded (tried: 1 to 50 ms)")
+    ax = made.add_subplot()
+    style.dress(ax, "", "delay, ms")
+    width = 0.8 / len(PLACES)
+    for index, place in enumerate(PLACES):
+        x = np.arange(len(SURFACES)) + (index - 0.5 * (len(PLACES) - 1)) * width
+        values = [largest[surface, place] for surface in SURFACES]
+        bars = ax.bar(x, values, 0.9 * width, color=style.colour(index), label=place)
+        labels = ["none" if value == 0.0 else f"{value:g}" for value in values]
+        ax.bar_label(bars, labels, fontsize=style.SMALL, color=style.INK)
+    ax.set_xticks(np.arange(len(SURFACES)), list(SURFACES))
+    style.legend(ax, outside=True)
+    return made

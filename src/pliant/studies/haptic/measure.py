@@ -167,6 +167,11 @@ def _link(check: Check, signals: Signals, window: Window) -> float:
     return metrics.peak(np.linalg.norm(signals.log["truth/shank/wrench"][window, :3], axis=1))
 
 
+def _knee(check: Check, signals: Signals, window: Window) -> float:
+    """Smallest angle of the last joint: 0 is the straight leg, where the Jacobian loses a rank."""
+    return float(np.degrees(np.min(np.abs(signals.log["truth/q"][window, -1]))))
+
+
 def _reachable(check: Check, signals: Signals, window: Window) -> float:
     return metrics.peak(signals.explored("reachable")[window, check.axis] - _wanted(check))
 
@@ -199,6 +204,7 @@ _KINDS: Mapping[str, tuple[str, Callable[[Check, Signals, Window], float]]] = {
     "speed": ("m/s", _speed),
     "over": ("N", _over),
     "link": ("N", _link),
+    "knee": ("deg", _knee),
     "reachable": ("N", _reachable),
     "share": ("1", _share),
 }
