@@ -71,6 +71,14 @@ def test_unsafe_values_are_warned_of_with_a_safe_one(changes: dict[str, Any], wo
         assert word in found
 
 
+def test_unreachable_force_is_warned_of_with_the_range_it_needs() -> None:
+    (warning,) = STUDY.build(STUDY.case("ball-unreachable")).warnings
+    assert "60 N along z are out of reach, 32.3 N is all" in warning
+    wider = merged(STUDY.case("ball-unreachable"), {"impedance": {"range": (0.025, 0.025, 0.0551)}})
+    assert "range z ≥ 0.055 m" in warning
+    assert STUDY.build(wider).warnings == ()
+
+
 def run(config: HapticConfig) -> dict[str, Array]:
     wired, recorder = STUDY.build(config), Recorder(None)
     outcome = loop.run(

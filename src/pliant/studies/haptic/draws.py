@@ -8,9 +8,8 @@ import numpy as np
 
 from pliant.studies.haptic.config import Environment, Floor, HapticConfig, Hardware, Material, OnlineChanges, Step
 from pliant.studies.haptic.safety import reachable_force
-from pliant.studies.haptic.scene import touching_height
+from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
 
-_FOOT = 0.02  # m, radius of the foot
 _DEPTH = 0.003  # m of the target below where the foot touches
 
 
@@ -42,7 +41,7 @@ def _scene(config: HapticConfig, rng: np.random.Generator) -> dict[str, Any]:
     most = reachable_force(0.0, stiffness, impedance.stiffness[2], impedance.force_max[2], 0.8 * impedance.range[2])
     force = min(float(rng.uniform(10.0, 40.0)), most)
     x, y, _ = config.steps[0].target or (0.0, 0.0, 0.0)
-    target = (x, y, touching_height(floor, x, y, _FOOT) - _DEPTH)
+    target = (x, y, touching_height(floor, x, y, FOOT_RADIUS) - _DEPTH)
     first = config.steps[0].model_copy(update={"target": target, "force": (0.0, 0.0, force)})
     steps = (first, *config.steps[1:])
     hardware: Hardware = config.hardware.model_copy(update={"mass_scale": masses})

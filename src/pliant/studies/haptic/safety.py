@@ -12,6 +12,7 @@ from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
 from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
 from pliant.studies.haptic.script import Wish, wishes
 
 _SAFE_GAIN = 0.5
@@ -25,7 +26,10 @@ def warnings_of(config: HapticConfig, robot: Robot) -> tuple[str, ...]:
     found += _exploration_gain(config)
     workspace = workspace_of(robot, config.frame)
     for time, wish in wishes(config, config.exploration):
-        found += [f"t = {time:g} s: {text}" for text in [*_force_bounds(wish), *_distance(wish, workspace)]]
+        found += [
+            f"t = {time:g} s: {text}"
+            for text in [*_force_bounds(wish), *_distance(wish, workspace), *_offsets(wish, config)]
+        ]
     return tuple(dict.fromkeys(found))
 
 
@@ -89,6 +93,36 @@ def _distance(wish: Wish, workspace: Workspace) -> list[str]:
         f"the target {list(wish.target)} m lies {1e3 * np.linalg.norm(target - nearest):.0f} mm out of reach and is"
         f" brought back; safe: {np.round(nearest, 4).tolist()} m"
     ]
+
+
+def _offsets(wish: Wish, config: HapticConfig) -> list[str]:
+    """Forces along z that the bound x_b of the offset does not allow on what lies below the target."""
+    below = _surface_below(wish.target, config)
+    F_d, F_max = wish.force[2], float(wish.tuning.force_max[2])
+    if below is None or config.random or not 0.0 < F_d <= F_max:
+        return []
+    depth, K_e = below
+    K_0, x_b = float(wish.tuning.stiffness[2]), float(wish.tuning.range[2])
+    most = reachable_force(depth, K_e, K_0, F_max, x_b)
+    if most >= F_d or K_0 == 0.0:
+        return []
+    enough = F_d * (K_e + K_0) / (K_e * K_0) - depth
+    return [
+        f"{F_d:g} N along z are out of reach, {most:.3g} N is all that x_b = {x_b:g} m allows there;"
+        f" safe: |F_d| ≤ {most:.3g} N or range z ≥ {enough:.3g} m"
+    ]
+
+
+def _surface_below(target: tuple[float, float, float], config: HapticConfig) -> tuple[float, float] | None:
+    """Depth of a target below where the foot would touch, m, and stiffness of what is there, N/m, where it is known."""
+    x, y, z = target
+    box, ball, floor = config.environment.box, config.environment.ball, config.environment.floor
+    if ball is not None and math.hypot(x - ball.position[0], y - ball.position[1]) < 0.3 * ball.radius:
+        return ball.position[2] + ball.radius + FOOT_RADIUS - z, ball.material.stiffness
+    if box is not None or ball is not None or floor is None:
+        return None  # beside things, what the foot meets first depends on its way
+    depth = touching_height(floor, x, y, FOOT_RADIUS) - z
+    return (depth, floor.material.stiffness) if depth > 0.0 else None
 
 
 def reachable_force(depth: float, surface_stiffness: float, stiffness: float, force_max: float, bound: float) -> float:

@@ -9,6 +9,7 @@ from pliant.simulation.scene import Thing
 from pliant.spatial import rpy
 from pliant.studies.haptic.config import Environment, Floor, Material
 
+FOOT_RADIUS = 0.02  # m, of the catalogue's leg
 FLOOR, BOX, BALL = "floor", "box", "ball"
 
 
