@@ -16,7 +16,8 @@ import pytest
 pytest.importorskip("viser", reason="the live page is not installed (pliant[live])")
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page as Tab  # noqa: E402
+from playwright.sync_api import Browser  # noqa: E402
+from playwright.sync_api import Page as Tab  # noqa: E402
 
 from pliant.live.launch import live_page  # noqa: E402
 from pliant.live.page import Page  # noqa: E402
@@ -30,7 +31,7 @@ _FLAGS = [
     "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 ]  # fmt: skip
-PATIENCE = 40.0  # s: other work may share the machine
+PATIENCE = 90.0  # s: other work may share the machine
 
 
 def until(holds: Callable[[], object], what: str, seconds: float = PATIENCE) -> None:
@@ -54,7 +55,7 @@ def browser() -> Iterator[Browser]:
 def wall_case() -> CaseConfig:
     """The arm holds its tool beside a wall, without joint friction: forces are what the controller says."""
     study = get_study("stack")
-    changes = {"path": {"kind": "hold", "ramp": 0.0}, "duration": 25.0, "joints": {"friction": 0.0}}
+    changes = {"path": {"kind": "hold", "ramp": 0.0}, "duration": 60.0, "joints": {"friction": 0.0, "damping": 1.0}}
     return merged(study.case("figure8-wall"), changes)
 
 
@@ -110,6 +111,7 @@ def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         thread = threading.Thread(target=page.serve)
         thread.start()
         tab = browser.new_page(viewport={"width": 1280, "height": 800})
+        tab.set_default_timeout(1e3 * PATIENCE)
         made = Live(server, page, tab, folder)
         tab.on("pageerror", lambda error: made.complaints.append(str(error)))
         tab.on("console", lambda note: made.complaints.append(note.text) if note.type == "error" else None)

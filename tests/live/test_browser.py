@@ -9,29 +9,23 @@ import pytest
 
 from pliant.live.replay import LoggedScene
 from pliant.telemetry.log import Log
-from tests.live.conftest import Live, until
-
-F_MAX = "control.tasks.ee.translation.force_max"
+from tests.live.conftest import PATIENCE, Live, until
 
 
-def thumb(live: Live, folder: str, label: str):  # type: ignore[no-untyped-def]  # a Playwright locator
-    """The thumb of a slider, by the text of its label."""
-    return live.tab.get_by_role("slider").nth(_place(live, label))
-
-
-def _place(live: Live, label: str) -> int:
-    """Which slider on the open tab has a label."""
-    return live.tab.evaluate(
-        """label => {
-            const labels = [...document.querySelectorAll('label')];
-            const sliders = [...document.querySelectorAll('[role=slider]')];
-            const found = labels.find(l => l.innerText.startsWith(label));
-            const y = found.getBoundingClientRect().top;
-            const far = s => Math.abs(s.getBoundingClientRect().top - y);
-            return sliders.indexOf(sliders.reduce((a, b) => far(a) <= far(b) ? a : b));
-        }""",
-        label,
-    )
+def drag(live: Live, label: str, share: float) -> None:
+    """Drags the thumb of a slider with the mouse. Args: label: how it begins; share: of the track, from the left."""
+    text = live.tab.locator("label", has_text=label).first
+    slider = text.locator("xpath=following::*[@role='slider'][1]")
+    slider.wait_for()
+    here = slider.bounding_box()
+    track = slider.locator("xpath=..").bounding_box()
+    assert here is not None
+    assert track is not None
+    mouse, y = live.tab.mouse, here["y"] + here["height"] / 2
+    mouse.move(here["x"] + here["width"] / 2, y)
+    mouse.down()
+    mouse.move(track["x"] + share * track["width"], y, steps=3)
+    mouse.up()
 
 
 def test_the_page_loads_without_errors(live: Live) -> None:
@@ -49,7 +43,7 @@ def test_the_page_loads_without_errors(live: Live) -> None:
 def test_a_typed_target_moves_the_robot_onto_the_wall(live: Live) -> None:
     """The offset is typed in the browser; the wall at x = 0.07 m stops the tool, and the force grows to its bound."""
     live.open_tab("Touch")
-    box = live.tab.locator("label", has_text="offset").locator("xpath=following::input[1]")
+    box = live.tab.locator("label", has_text="offset").locator("xpath=following::input[@type='text'][1]")
     before = live.latest("contact")
     box.fill("0.25")
     box.press("Enter")
@@ -70,11 +64,8 @@ def test_a_slider_changes_the_running_controller(live: Live) -> None:
     """F_max turned down in the browser while the tool presses: the force follows within the study's settling time."""
     live.open_tab("Tune")
     pressed, old = live.latest("contact"), bound(live)
-    slider = thumb(live, "translation", "force max")
-    slider.focus()
-    for _ in range(25):
-        slider.press("ArrowLeft")
-    until(lambda: bound(live) < old - 20.0, "a new bound")
+    drag(live, "force max", 0.43)
+    until(lambda: bound(live) < old - 10.0, "a new bound")
     live.settle(1.0)
     new = bound(live)
     for axis in "xyz":
@@ -87,7 +78,7 @@ def test_a_slider_changes_the_running_controller(live: Live) -> None:
 def test_an_impossible_value_is_refused_with_the_reason(live: Live) -> None:
     live.open_tab("Tune")
     old = live.page.config
-    box = live.tab.locator("label", has_text="force max").first.locator("xpath=following::input[1]")
+    box = live.tab.locator("label", has_text="force max").first.locator("xpath=following::input[@type='text'][1]")
     box.fill("1")
     box.press("Enter")
     live.tab.get_by_text("Refused:").first.wait_for()
@@ -102,15 +93,14 @@ def test_a_push_shows_in_the_plots(live: Live) -> None:
     until(lambda: live.latest("contact") == 0.0, "no contact")
     live.settle(2.0)
     calm = float(np.abs(live.column("error.z")[-25:]).max())
-    force = live.tab.get_by_role("slider").nth(_place(live, "force"))
-    force.focus()
-    for _ in range(30):
-        force.press("ArrowRight")
+    drag(live, "force [N]", 0.5)
     live.tab.get_by_role("button", name="Push", exact=True).click()
-    until(lambda: np.any(live.column("push.x")[-60:] > 30.0), "a push")
-    live.settle(0.3)
+    until(lambda: np.any(live.column("push.x") > 60.0), "a push")
+    live.settle(1.0)
     live.shoot("push")
-    assert float(np.abs(live.column("error.x")[-40:]).max()) > calm + 0.1  # mm
+    pushed = live.column("push.x") > 60.0
+    assert 0.25 <= 0.02 * np.count_nonzero(pushed) <= 0.35  # s, as the control says
+    assert float(np.abs(live.column("error.x")[pushed]).max()) > calm + 1.0  # mm
 
 
 def test_pause_step_and_slow_motion(live: Live) -> None:
@@ -131,7 +121,7 @@ def test_recording_and_replay(live: Live) -> None:
     """What was recorded from the page is what the page shows."""
     live.open_tab("Run")
     live.tab.get_by_role("button", name="Record").click()
-    live.tab.get_by_text("recording").wait_for()
+    live.tab.get_by_role("button", name="Stop recording").wait_for()
     live.settle(1.0)
     live.tab.get_by_role("button", name="Stop recording").click()
     until(lambda: live.page.run.recording is None, "the end of the log")
@@ -150,15 +140,21 @@ def test_recording_and_replay(live: Live) -> None:
     np.testing.assert_allclose(rows[:, first : first + 3], error, atol=1e-9)
 
 
-def test_closing_the_browser_leaves_run_and_log_whole(live: Live) -> None:
+def test_a_second_browser_watches_takes_over_and_vanishes(live: Live) -> None:
+    """Watching changes nothing; steering works once taken over; a tab that is closed in the middle of a recording
+    leaves run and log whole."""
     before = set(live.folder.glob("*.mcap"))
-    other = live.tab.context.browser.new_page()  # type: ignore[union-attr]
+    other = live.tab.context.browser.new_page(viewport={"width": 1280, "height": 640})  # type: ignore[union-attr]
+    other.set_default_timeout(1e3 * PATIENCE)
     other.goto(live.server.url)
-    other.get_by_role("button", name="Steer from this browser").click()
     until(lambda: live.page.seat.watchers() == 1, "somebody who watches")
+    ticks = live.page.run.ticks
+    other.get_by_role("button", name="Pause").click()
+    other.get_by_text("You are watching").first.wait_for()
+    until(lambda: live.page.run.ticks > ticks + 200, "the loop going on")
+    other.get_by_role("button", name="Steer from this browser").click()
     other.get_by_role("button", name="Record").click()
-    other.get_by_text("recording").wait_for()
-    live.settle(0.3)
+    other.get_by_role("button", name="Stop recording").wait_for()
     other.close()
     until(lambda: live.page.seat.watchers() == 0, "the browser's end")
     live.settle(0.5)
@@ -168,20 +164,7 @@ def test_closing_the_browser_leaves_run_and_log_whole(live: Live) -> None:
     log = Log.open(path)
     assert not log.truncated
     np.testing.assert_allclose(np.diff(log.time()), 1e-3, atol=1e-9)
-    assert log.duration > 0.8
-
-
-def test_a_watcher_cannot_steer(live: Live) -> None:
-    other = live.tab.context.browser.new_page()  # type: ignore[union-attr]
-    try:
-        other.goto(live.server.url)
-        until(lambda: live.page.seat.watchers() == 1, "somebody who watches")
-        ticks = live.page.run.ticks
-        other.get_by_role("button", name="Pause").click()
-        other.get_by_text("You are watching").first.wait_for()
-        until(lambda: live.page.run.ticks > ticks + 200, "the loop going on")
-    finally:
-        other.close()
+    assert log.duration > 0.5
 
 
 def test_nothing_went_wrong_in_the_console(live: Live) -> None:

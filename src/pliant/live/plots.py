@@ -148,6 +148,8 @@ def _axis(label: str, size: int) -> Any:
         "font": "11px system-ui, sans-serif",
         "size": size if not label else 24,
     }
+    if not label:
+        axis["space"] = 18.0  # px between ticks: the plots are low
     if label:
         axis |= {"label": label, "labelSize": 16.0, "labelFont": "11px system-ui, sans-serif", "labelGap": 0.0}
     return axis

@@ -162,7 +162,9 @@ class ReplayPage:
         self._playing = True
         self._stop = threading.Event()
         gui = self._viser.gui
-        gui.add_markdown(_header(shown.log))
+        self.header = _header(shown.log)
+        """what the page says about the log"""
+        gui.add_markdown(self.header)
         span = max(self._end - self._start, 1e-3)
         self._slider = gui.add_slider(
             "time [s]", self._start, self._start + span, 0.001, self._start, hint="Drag to any time."

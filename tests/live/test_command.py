@@ -1,0 +1,95 @@
+"""`pliant live` in a process of its own: bad input gets one sentence and exit code 2."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pliant.live.replay import LoggedScene, ReplayPage
+from pliant.live.server import PageServer
+from pliant.studies.config import merged
+from pliant.studies.registry import get_study
+from pliant.studies.runner import run_case
+from pliant.telemetry.log import Log
+
+
+def pliant(*arguments: str) -> subprocess.CompletedProcess[str]:
+    program = "from pliant.cli import main; main()"
+    call = [sys.executable, "-c", program, *arguments]
+    return subprocess.run(call, capture_output=True, text=True, check=False, timeout=120)
+
+
+def refused(done: subprocess.CompletedProcess[str], *words: str) -> None:
+    """One sentence on standard error with these words, and exit code 2."""
+    assert done.returncode == 2, done.stderr
+    lines = done.stderr.strip().splitlines()
+    assert len(lines) == 1, done.stderr
+    assert lines[0].startswith("error: ")
+    for word in words:
+        assert word in lines[0]
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A log of 1.5 s."""
+    folder = tmp_path_factory.mktemp("log")
+    study = get_study("stack")
+    config = merged(study.case("figure8-plain"), {"path": {"kind": "hold"}, "duration": 1.5})
+    path = run_case(study, config, folder, figures=False).log
+    assert path is not None
+    return path
+
+
+def test_port_in_use() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        refused(pliant("live", "stack", "--port", str(port)), f"port {port} on 127.0.0.1 is in use", "--port")
+
+
+def test_unknown_study_and_case() -> None:
+    refused(pliant("live", "stak"), "no study named 'stak'", "did you mean 'stack'?")
+    refused(pliant("live", "stack", "--case", "figure9"), "no case 'figure9'")
+
+
+def test_no_such_log_and_no_log(tmp_path: Path) -> None:
+    refused(pliant("live", str(tmp_path / "none.mcap")), "none.mcap cannot be read")
+    (tmp_path / "text.mcap").write_text("this is not a log")
+    refused(pliant("live", str(tmp_path / "text.mcap")), "text.mcap")
+
+
+def test_a_log_cut_off_at_its_head(log: Path, tmp_path: Path) -> None:
+    stump = tmp_path / "stump.mcap"
+    stump.write_bytes(log.read_bytes()[:64])
+    refused(pliant("live", str(stump)), "stump.mcap", "cut off")
+
+
+def test_a_log_cut_off_in_the_middle_is_shown_up_to_there(log: Path, tmp_path: Path) -> None:
+    stump = tmp_path / "half.mcap"
+    raw = log.read_bytes()
+    stump.write_bytes(raw[: len(raw) * 6 // 10])
+    whole, half = Log.open(log), Log.open(stump)
+    assert half.truncated
+    shown = LoggedScene(half)
+    assert 0.0 < shown.time[-1] < whole.time()[-1]
+    with PageServer("127.0.0.1", 0) as server:
+        page = ReplayPage(server, shown)
+        assert "cut off" in page.header
+
+
+def test_a_page_beside_a_run_ends_with_it(tmp_path: Path) -> None:
+    """`pliant run --live` writes what it writes without a page."""
+    settings = ["--set", "path.kind=hold", "--set", "duration=1.0"]
+    done = pliant("run", "stack", "--case", "figure8-plain", "--live", "--out", str(tmp_path), *settings)
+    assert done.returncode == 0, done.stderr
+    assert "open  http://127.0.0.1:" in done.stdout
+    [path] = tmp_path.glob("*.mcap")
+    log = Log.open(path)
+    assert log.failure is None
+    assert len(log.time()) == 1000
+    assert (tmp_path / "summary.json").exists()
