@@ -144,7 +144,7 @@ def test_a_second_browser_watches_takes_over_and_vanishes(live: Live) -> None:
     """Watching changes nothing; steering works once taken over; a tab that is closed in the middle of a recording
     leaves run and log whole."""
     before = set(live.folder.glob("*.mcap"))
-    other = live.tab.context.browser.new_page(viewport={"width": 1280, "height": 640})  # type: ignore[union-attr]
+    other = live.tab.context.browser.new_page(viewport={"width": 820, "height": 600})  # type: ignore[union-attr]
     other.set_default_timeout(1e3 * PATIENCE)
     other.goto(live.server.url)
     until(lambda: live.page.seat.watchers() == 1, "somebody who watches")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,7 @@ from pliant.studies.base import CaseConfig
 from pliant.studies.config import merged
 from pliant.studies.registry import get_study, study_names
 
+_TEXT_PERIOD = 0.3  # s
 _NONE_YET: tuple[str, ...] = ("–",)
 _SPEEDS = {"2×": 2.0, "1×": 1.0, "1/2": 0.5, "1/5": 0.2, "1/20": 0.05}
 
@@ -39,6 +41,8 @@ class RunControls:
         self.recording: Path | None = None
         """log that is being written"""
         self.ticks = 0
+        self._told: tuple[Path | None, bool, str | None] | None = None
+        self._tell_at = 0.0
         """periods since the start"""
         gui = server.gui
         self._status = gui.add_markdown("*starting …*")
@@ -92,7 +96,11 @@ class RunControls:
 
     def beat(self, pulse: Pulse) -> None:
         """How the loop fares."""
+        changed = (pulse.recording, pulse.playing, pulse.ended) != self._told
         self.recording, self.ticks = pulse.recording, pulse.ticks
+        if not changed and time.monotonic() < self._tell_at:
+            return  # text is dear to browsers
+        self._told, self._tell_at = (pulse.recording, pulse.playing, pulse.ended), time.monotonic() + _TEXT_PERIOD
         self._record.label = "Stop recording" if pulse.recording else "Record"
         playing = pulse.playing and pulse.ended is None
         self._play.label = "Pause" if playing else "Play"

@@ -23,6 +23,7 @@ _METRES_PER_NEWTON = 4e-3
 _LONGEST = 0.6  # m of an arrow
 _SHORTEST = 0.01  # m; below it nothing is drawn
 _TRACE = 120  # points, 4 s at 30 Hz
+_TRACES_EVERY = 3  # pictures; lines are dear to software renderers
 _CONE_HEIGHT = 0.10  # m
 _FORCES_SHOWN = 6  # of a prediction
 _NOWHERE = np.zeros((1, 2, 3))
@@ -44,6 +45,7 @@ class SceneView:
         self._target_trace: deque[Array] = deque(maxlen=_TRACE)
         self._shown: dict[str, bool] = {}
         self._drawn_at = -math.inf
+        self._count = 0
         self._cone: Any = None
         self._cone_friction = -1.0
         self._scene.set_up_direction("+z")
@@ -143,12 +145,14 @@ class SceneView:
             handle.points = np.array(segments, dtype=np.float32)
 
     def _traces(self, picture: Picture) -> None:
-        self._tool_trace.append(picture.tool)
-        self._line("tool_trace", self._tool_trace)
         self._target.visible = picture.target is not None
+        self._tool_trace.append(picture.tool)
         if picture.target is not None:
             self._target.position = picture.target
             self._target_trace.append(picture.target)
+        self._count += 1
+        if self._count % _TRACES_EVERY == 0:
+            self._line("tool_trace", self._tool_trace)
             self._line("target_trace", self._target_trace)
         self._line("predicted_path", () if picture.predicted_path is None else picture.predicted_path)
 
