@@ -15,7 +15,6 @@ from pliant.telemetry.log import Log
 ENERGIES = ("stored", "supplied", "delivered", "dissipated")
 """entries of the ledger, channels energy/…"""
 AXES = ("x", "y", "z")
-_FORCES = ("contact", "commanded", "desired", "push")
 _M_TO_MM = 1e3
 _S_TO_MS = 1e3
 
@@ -30,12 +29,14 @@ class Columns:
     command_wrench: str
     """channel of the wrench that the controller asks for; empty if there is none"""
     energies: tuple[str, ...]
+    live: bool
+    """whether pushes and computing times are known: a log has neither"""
 
     @staticmethod
     def of(tick: Tick, joints: Sequence[str]) -> Columns:
         """The columns of ticks like this one."""
         frame = tick.reference.tasks[0].frame if tick.reference.tasks else ""
-        return _columns(frame, tuple(tick.command.diagnostics), joints)
+        return _columns(frame, tuple(tick.command.diagnostics), joints, live=True)
 
     def row(self, tick: Tick, pushes: Sequence[Push], control_time: float) -> list[float]:
         """One sample.
@@ -52,7 +53,7 @@ class Columns:
             actual = None if tick.truth is None else tick.truth.positions.get(task.frame)
             error = _NAN3 if actual is None else (task.position - actual) * _M_TO_MM
         diagnostics = tick.command.diagnostics
-        asked = np.asarray(diagnostics[self.command_wrench])[:3] if self.command_wrench else _NAN3
+        asked = np.asarray(diagnostics[self.command_wrench])[:3] if self.command_wrench else ()
         push = np.sum([p.force for p in pushes], axis=0) if pushes else _ZERO3
         energies = [float(np.asarray(diagnostics[f"energy/{name}"])) for name in self.energies]
         contact = contact_force(tick, self.frame)
@@ -63,18 +64,17 @@ class Columns:
     def of_log(log: Log, joints: Sequence[str]) -> tuple[Columns, Array]:
         """Columns and all samples (k, columns) of a log."""
         frames = [name.split("/")[1] for name in log.matching("/position") if name.startswith("reference/")]
-        made = _columns(first_frame(log, frames), tuple(log.channels), joints)
+        made = _columns(first_frame(log, frames), tuple(log.channels), joints, live=False)
         time = log.time("command/torque")
         f = made.frame
         contact = _channel(log, (f"estimate/{f}/wrench", f"truth/{f}/wrench"), time, 3)
-        asked = _channel(log, (made.command_wrench,), time, 3)
+        asked = _channel(log, (made.command_wrench,), time, 3) if made.command_wrench else np.empty((len(time), 0))
         desired = _channel(log, (f"reference/{f}/wrench",), time, 3)
         target = _channel(log, (f"reference/{f}/position",), time, 3)
         error = _M_TO_MM * (target - _channel(log, (f"truth/{f}/position",), time, 3))
         energies = [_channel(log, (f"energy/{name}",), time, 1) for name in made.energies]
-        nothing = np.full((len(time), 1), np.nan)
-        parts = [time[:, None], contact, asked, desired, np.repeat(nothing, 3, axis=1), error]
-        return made, np.hstack([*parts, *energies, log["command/torque"], nothing])
+        parts = [time[:, None], contact, asked, desired, error]
+        return made, np.hstack([*parts, *energies, log["command/torque"]])
 
 
 _NAN3, _ZERO3 = np.full(3, np.nan), np.zeros(3)
@@ -99,12 +99,14 @@ def first_frame(log: Log, frames: Sequence[str]) -> str:
     return (touching or list(frames) or [""])[0]
 
 
-def _columns(frame: str, channels: Sequence[str], joints: Sequence[str]) -> Columns:
+def _columns(frame: str, channels: Sequence[str], joints: Sequence[str], *, live: bool) -> Columns:
     wrench = next((n for n in channels if n.endswith("/wrench") and n.split("/")[0] not in _SIGNALS), "")
     energies = tuple(name for name in ENERGIES if f"energy/{name}" in channels)
-    vectors = [f"{name}.{axis}" for name in (*_FORCES, "error") for axis in AXES]
-    scalars = [*(f"energy.{name}" for name in energies), *(f"torque.{name}" for name in joints), "control"]
-    return Columns(("time", *vectors, *scalars), frame, wrench, energies)
+    forces = ["contact", *(["commanded"] if wrench else []), "desired", *(["push"] if live else [])]
+    vectors = [f"{name}.{axis}" for name in (*forces, "error") for axis in AXES]
+    scalars = [*(f"energy.{name}" for name in energies), *(f"torque.{name}" for name in joints)]
+    names = ("time", *vectors, *scalars, *(["control"] if live else []))
+    return Columns(names, frame, wrench, energies, live)
 
 
 _SIGNALS = ("measurement", "estimate", "reference", "command", "truth")

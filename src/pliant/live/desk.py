@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from pliant.interfaces import Controller
 from pliant.live.messages import Aim, Pull
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import Imperfections, Push, Scene
+from pliant.spatial import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +37,13 @@ class Wishes:
 
 
 class Desk:
-    """Where the wishes lie. The loop's wrappers look at it once a period and never change it, but for taking pushes."""
+    """Where the wishes lie. The loop's wrappers read the wishes once a period and leave behind what they did."""
 
     def __init__(self) -> None:
         self.wishes = Wishes()
         self.pushes: list[tuple[str, tuple[float, float, float], float]] = []
         """(frame, force in N, duration in s) that wait for the next period"""
+        self.offset: Array = np.zeros(3)
+        """(3,) m by which the first task's target is moved at present"""
         self.acting: tuple[Push, ...] = ()
         """pushes that act on the robot at present"""

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 _SLASH, _SPACE = "\u2215", "\u00a0"  # browsers break lines at the plain ones
+_TINY = 1e-4  # numbers below it are shown in full, as text
 Path = tuple[str, ...]
 Kind = Literal["number", "integer", "switch", "choice", "vector", "text"]
 
@@ -39,7 +40,9 @@ class Leaf:
     def label(self) -> str:
         """Name and unit, for the control."""
         name = self.path[-1].replace("_", " ")
-        unit = self.unit.replace("/", _SLASH).replace(" ", _SPACE)  # a unit stays in one line
+        unit = (
+            self.unit.replace("/", _SLASH).replace(" ", _SPACE).replace(f",{_SPACE}", ", ")
+        )  # a unit stays in one line
         return f"{name} [{unit}]" if self.unit and self.unit != "1" else name
 
 
@@ -135,13 +138,15 @@ def _kind(value: Any, kinds: list[Any], choices: tuple[str, ...]) -> Kind | None
     if isinstance(value, bool):
         return "switch"
     if isinstance(value, float):
-        return "number"
+        return "text" if 0.0 < abs(value) < _TINY else "number"
     if isinstance(value, int):
         return "number" if float in kinds else "integer"
     if isinstance(value, tuple) and len(value) == 3 and all(isinstance(v, (int, float)) for v in value):
         return "vector"
     if value is None and not {float, int, str} & set(kinds):
         return None  # a whole part that is switched off: for a configuration file
+    if isinstance(value, tuple) and any(isinstance(v, BaseModel) for v in value):
+        return None  # a list of parts: for a configuration file
     if value is None or isinstance(value, (str, tuple)):
         return "text"
     return None

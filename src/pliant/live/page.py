@@ -33,7 +33,7 @@ from pliant.live.scene_view import SceneView
 from pliant.live.seat import Seat
 from pliant.live.server import PageServer
 from pliant.live.target import TargetControls
-from pliant.live.tuning import parameters_of
+from pliant.live.tuning import online_fields, parameters_of
 from pliant.live.world_form import SceneForm
 from pliant.simulation import Imperfections
 from pliant.studies.base import CaseConfig
@@ -180,10 +180,14 @@ class Page:
     def _tuning_form(self, config: CaseConfig) -> None:
         parameters = parameters_of(config)
         with self._tuning_tab:
-            if parameters is None or "control" not in type(config).model_fields:
-                self._forms.append(self._viser.gui.add_markdown("This controller has no parameters to turn."))
-                return
-            self._forms.append(Form(self._viser.gui, self.seat, group_of(parameters), self._change_parameters))
+            gui, online = self._viser.gui, online_fields(config)
+            if parameters is not None and "control" in type(config).model_fields:
+                self._forms.append(Form(gui, self.seat, group_of(parameters), self._change_parameters))
+            elif online:
+                others = frozenset(type(config).model_fields) - online
+                self._forms.append(Form(gui, self.seat, group_of(config, skip=others), self._change_online))
+            else:
+                self._forms.append(gui.add_markdown("This controller has no parameters to turn."))
 
     def _case_form(self, config: CaseConfig) -> None:
         self._wanted = config
@@ -207,7 +211,13 @@ class Page:
     def _change_parameters(self, place: Place, value: Any) -> None:
         if self._config is None:
             return
-        config = merged(self._config, nested(("control", *place), value))
+        self._retune(merged(self._config, nested(("control", *place), value)))
+
+    def _change_online(self, place: Place, value: Any) -> None:
+        if self._config is not None:
+            self._retune(merged(self._config, nested(place, value)))
+
+    def _retune(self, config: CaseConfig) -> None:
         parameters_of(config)  # raises what the whole set of parameters forbids
         self._config = config
         self.run.changed(config)

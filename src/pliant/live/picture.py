@@ -8,7 +8,7 @@ import numpy as np
 
 from pliant.live.curves import Columns
 from pliant.live.looks import Poser
-from pliant.live.messages import Aim, Picture
+from pliant.live.messages import Picture
 from pliant.signals import Reference, Tick
 from pliant.simulation import Push
 from pliant.spatial import Array
@@ -17,7 +17,7 @@ _NOTHING = np.zeros(3)
 
 
 def picture(
-    run: int, tick: Tick, columns: Columns, body: Poser, ghost: Poser, pushes: Sequence[Push], aim: Aim
+    run: int, tick: Tick, columns: Columns, body: Poser, ghost: Poser, pushes: Sequence[Push], offset: Array
 ) -> Picture:
     """The scene of a tick.
 
@@ -28,7 +28,7 @@ def picture(
         body: of the robot and the things.
         ghost: another one, of the reference's posture.
         pushes: that act.
-        aim: what the page added to the reference.
+        offset: (3,) m, what the page added to the target.
     """
     truth, reference = tick.truth, tick.reference
     q, objects = (tick.measurement.q, {}) if truth is None else (truth.q, truth.objects)
@@ -46,7 +46,7 @@ def picture(
         ghost=None if posture is None else ghost.bodies(posture, objects),
         tool=positions[-1] if here is None else here,
         target=target,
-        nominal=None if target is None else target - np.array(aim.offset),
+        nominal=None if target is None else target - offset,
         contacts=_forces(tick, body),
         asked=asked,
         predicted_path=_predicted(tick, "mpc/predicted_path", reference),

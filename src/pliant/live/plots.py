@@ -74,14 +74,16 @@ class Plots:
         energies = [name for name in columns if name.startswith("energy.")]
         torques = [name for name in columns if name.startswith("torque.")]
         with self._contact:
-            self._plots = [self._add("force, N", tuple(_FORCES), tuple(_FORCES.values()))]
+            forces = tuple(name for name in _FORCES if f"{name}.x" in columns)
+            self._plots = [self._add("force, N", forces, [_FORCES[name] for name in forces])]
             self._plots.append(self._add("position error, mm", tuple(f"error.{axis}" for axis in AXES)))
             if energies:
                 self._plots.append(self._add("energy, J", tuple(energies)))
         with self._effort:
             self._plots.append(self._add("torque, N·m", tuple(torques)))
-            title = f"control step, ms (deadline {1e3 * period:g} ms)"
-            self._plots.append(self._add(title, ("control",)))
+            if "control" in columns:
+                title = f"control step, ms (deadline {1e3 * period:g} ms)"
+                self._plots.append(self._add(title, ("control",)))
 
     def extend(self, run: int, rows: Array) -> None:
         """Adds samples; those of a new run start anew."""
@@ -103,7 +105,7 @@ class Plots:
         recent = self._rows[self._rows[:, 0] >= self._rows[-1, 0] - WINDOW]
         time = np.round(recent[:, 0], 3)
         for plot in self._plots:
-            plot.handle.data = (time, *(np.round(self._curve(recent, name), 4) for name in plot.columns))
+            plot.handle.data = (time, *(np.nan_to_num(np.round(self._curve(recent, name), 4)) for name in plot.columns))
 
     def latest(self, name: str) -> float:
         """The last value of a column, or of the magnitude of a vector; not-a-number before there is one."""

@@ -29,8 +29,8 @@ from pliant.live.pace import Pace
 from pliant.live.recording import SwitchedRecorder
 from pliant.live.steered_controller import SteeredController, with_core
 from pliant.live.steered_plant import SteeredPlant
-from pliant.live.steered_source import SteeredSource
-from pliant.live.tuning import parameters_of, retuning
+from pliant.live.steered_source import steered
+from pliant.live.tuning import parameters_of, retuning, retuning_of_case
 from pliant.live.watch import Watch
 from pliant.studies.base import CaseConfig, Experiment, Study
 from pliant.studies.runner import run_info
@@ -76,7 +76,7 @@ class Session:
         self.experiment = replace(
             built,
             plant=self.plant,
-            source=SteeredSource(built.source, self.desk),
+            source=steered(built.source, self.desk),
             controller=SteeredController(built.controller, self.desk),
         )
         self.recorder = SwitchedRecorder(run_info(study, config, built), built.channels)
@@ -154,8 +154,9 @@ class Session:
         """Gives the controller the parameters of another configuration. Raises PliantError if it cannot have them."""
         before, after = parameters_of(self.config), parameters_of(config)
         if before is None or after is None:
-            return
-        change = retuning(before, after, config, self.experiment.robot, self.plant.period)
+            change = retuning_of_case(config)
+        else:
+            change = retuning(before, after, config, self.experiment.robot, self.plant.period)
         successor = None if change.controller is None else with_core(self._core, change.controller)
         wishes = self.desk.wishes
         self.desk.wishes = replace(

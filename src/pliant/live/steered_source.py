@@ -2,46 +2,89 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pliant.interfaces import ReferenceSource
 from pliant.live.desk import Desk
-from pliant.live.messages import Aim
+from pliant.references.haptic_exploration import HapticExploration
 from pliant.signals import Estimate, ImpedanceTuning, Preview, Reference, TaskReference
 from pliant.spatial import Array
 
+TARGET_SPEED = 0.5  # m/s: a target that jumps would put energy into the robot that no ledger books
 
-class SteeredSource(ReferenceSource[Any]):
+
+class Shift(NamedTuple):
+    """What the page adds to the first task at present."""
+
+    offset: Array
+    """(3,) m"""
+    velocity: Array
+    """(3,) m/s with which it changes"""
+    force_scale: float
+
+
+class SteeredState(NamedTuple):
+    """State of the source inside, and how far the target was moved."""
+
+    inner: Any
+    time: float
+    """s of the last step"""
+    offset: Array
+    """(3,) m"""
+
+
+class SteeredSource(ReferenceSource[SteeredState]):
     """Another source's references with what the desk says: other tunings, another place, another force.
+
+    The place moves at `TARGET_SPEED` at most; tunings and force are swapped whole between two ticks.
 
     Args:
         inner: where the references come from.
-        desk: read once a step.
+        desk: read once a step; told how far the target was moved.
     """
 
     def __init__(self, inner: ReferenceSource[Any], desk: Desk) -> None:
         self.inner, self._desk = inner, desk
 
-    def init(self, estimate: Estimate) -> Any:
-        return self.inner.init(estimate)
+    def init(self, estimate: Estimate) -> SteeredState:
+        return SteeredState(self.inner.init(estimate), estimate.time, np.zeros(3))
 
-    def step(self, estimate: Estimate, state: Any) -> tuple[Reference, Any]:
-        reference, state = self.inner.step(estimate, state)
+    def step(self, estimate: Estimate, state: SteeredState) -> tuple[Reference, SteeredState]:
+        reference, inner = self.inner.step(estimate, state.inner)
         wishes = self._desk.wishes
+        shift = _moved(state.offset, np.array(wishes.aim.offset), estimate.time - state.time, wishes.aim.force_scale)
+        self._desk.offset = shift.offset
         if wishes.tunings:
             reference = _retuned(reference, wishes.tunings)
         if wishes.whole is not None:
             reference = replace(reference, tuning=wishes.whole)
-        if wishes.aim != _AS_PLANNED and reference.tasks:
-            reference = _aimed(reference, wishes.aim)
-        return reference, state
+        if reference.tasks and (shift.force_scale != 1.0 or np.any(shift.offset) or np.any(shift.velocity)):
+            reference = _shifted(reference, shift)
+        return reference, SteeredState(inner, estimate.time, shift.offset)
 
 
-_AS_PLANNED = Aim()
+def steered(source: ReferenceSource[Any], desk: Desk) -> ReferenceSource[Any]:
+    """A source with what the desk says; an exploration hears it first, since it looks for the place and the force."""
+    if isinstance(source, HapticExploration):
+        exploring = copy.copy(source)
+        exploring.inner = SteeredSource(source.inner, desk)
+        return exploring
+    return SteeredSource(source, desk)
+
+
+def _moved(offset: Array, wanted: Array, duration: float, force_scale: float) -> Shift:
+    """One step towards the wanted offset."""
+    way = wanted - offset
+    distance = float(np.linalg.norm(way))
+    if distance == 0.0 or duration <= 0.0:
+        return Shift(offset, np.zeros(3), force_scale)
+    step = way * min(1.0, TARGET_SPEED * duration / distance)
+    return Shift(wanted if distance <= TARGET_SPEED * duration else offset + step, step / duration, force_scale)
 
 
 def _retuned(reference: Reference, tunings: Mapping[str, ImpedanceTuning]) -> Reference:
@@ -49,16 +92,17 @@ def _retuned(reference: Reference, tunings: Mapping[str, ImpedanceTuning]) -> Re
     return replace(reference, tasks=tuple(tasks))
 
 
-def _aimed(reference: Reference, aim: Aim) -> Reference:
+def _shifted(reference: Reference, shift: Shift) -> Reference:
     first, *others = reference.tasks
-    offset = np.array(aim.offset)
-    preview = reference.preview and _aimed_preview(reference.preview, offset, aim.force_scale)
-    return replace(reference, tasks=(_aimed_task(first, offset, aim.force_scale), *others), preview=preview)
+    preview = reference.preview and _shifted_preview(reference.preview, shift)
+    return replace(reference, tasks=(_shifted_task(first, shift), *others), preview=preview)
 
 
-def _aimed_task(task: TaskReference, offset: Array, force_scale: float) -> TaskReference:
-    return replace(task, position=task.position + offset, wrench=force_scale * task.wrench)
+def _shifted_task(task: TaskReference, shift: Shift) -> TaskReference:
+    twist = task.velocity.copy()
+    twist[:3] += shift.velocity
+    return replace(task, position=task.position + shift.offset, velocity=twist, wrench=shift.force_scale * task.wrench)
 
 
-def _aimed_preview(preview: Preview, offset: Array, force_scale: float) -> Preview:
-    return replace(preview, position=preview.position + offset, wrench=force_scale * preview.wrench)
+def _shifted_preview(preview: Preview, shift: Shift) -> Preview:
+    return replace(preview, position=preview.position + shift.offset, wrench=shift.force_scale * preview.wrench)

@@ -8,6 +8,7 @@ from typing import Any
 
 from pliant.entries import ControllerConfig, ControllerEntry
 from pliant.interfaces import Controller
+from pliant.references.exploration_config import ExplorationConfig
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.studies.base import CaseConfig
@@ -23,6 +24,30 @@ class Retuning:
     """tuning of the whole controller, carried by the references; None if it takes none"""
     controller: Controller[Any] | None
     """a successor, where a parameter changed that no reference carries"""
+
+
+def online_fields(config: CaseConfig) -> frozenset[str]:
+    """Parts of a case that references carry, in studies whose controllers have no parameters of their own."""
+    if parameters_of(config) is not None:
+        return frozenset()
+    values = {name: getattr(config, name) for name in type(config).model_fields}
+    return frozenset(name for name, value in values.items() if _is_online(value))
+
+
+def retuning_of_case(config: CaseConfig) -> Retuning:
+    """The same for the parts that `online_fields` names."""
+    parts = [getattr(config, name) for name in sorted(online_fields(config))]
+    frame = str(getattr(config, "frame", ""))
+    tunings = {frame: part.tuning() for part in parts if not isinstance(part, ExplorationConfig)}
+    whole = next((part for part in parts if isinstance(part, ExplorationConfig)), None)
+    return Retuning(tunings, whole, None)
+
+
+def _is_online(value: Any) -> bool:
+    if isinstance(value, ExplorationConfig):
+        return True
+    find = getattr(value, "tuning", None)
+    return callable(find) and isinstance(find(), ImpedanceTuning)
 
 
 def parameters_of(config: CaseConfig) -> ControllerConfig | None:

@@ -87,7 +87,7 @@ class Watch:
                 self._rows = []
 
     def _picture(self, tick: Tick, columns: Columns) -> Picture:
-        return picture(self._run, tick, columns, self._body, self._ghost, self._desk.acting, self._desk.wishes.aim)
+        return picture(self._run, tick, columns, self._body, self._ghost, self._desk.acting, self._desk.offset)
 
     def pulse(self, ended: str | None = None) -> Pulse:
         """How the loop fares. Args: ended: why nothing moves any more."""

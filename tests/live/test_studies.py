@@ -1,0 +1,89 @@
+"""Every study can be steered while it runs: the desired force and the parameters reach whoever uses them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pliant import loop
+from pliant.live.messages import Aim, Message, Note, Parameters, Ready
+from pliant.live.pace import Pace
+from pliant.live.session import Session
+from pliant.live.steered_source import TARGET_SPEED
+from pliant.live.tuning import online_fields, parameters_of
+from pliant.signals import Tick
+from pliant.studies.config import merged
+from pliant.studies.registry import get_study, study_names
+
+
+def steer(study_name: str, case: str, ticks: int, at: int, asks: Sequence[Any]) -> tuple[list[Tick], list[Message]]:
+    """Runs a case and does what is asked at a tick. Each entry is a message, or changes of the configuration."""
+    study = get_study(study_name)
+    config = merged(study.case(case), {"duration": 1e-3 * ticks})
+    said: list[Message] = []
+    seen: list[Tick] = []
+    session = Session(study, config, said.append, 1)
+
+    def attend() -> None:
+        session.announce()
+        if len(seen) == at:
+            for ask in asks:
+                session.obey(Parameters(merged(config, ask)) if isinstance(ask, dict) else ask, pace)
+
+    pace = Pace(session.plant.period, attend, lambda seconds: None, paced=False)
+    wired = session.experiment
+    outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), [seen.append])
+    assert outcome.failure is None
+    return seen, said
+
+
+@pytest.mark.parametrize(
+    ("study", "case", "frame", "force", "change"),
+    [
+        ("haptic", "floor", "foot", 40.0, {"impedance": {"force_max": (100.0, 100.0, 200.0)}}),
+        ("polishing", "ideal", "tool", 50.0, {"control": {"contact": {"stiffness": [4000.0]}}}),
+    ],
+)
+def test_half_the_force_with_other_parameters(study: str, case: str, frame: str, force: float, change: Any) -> None:
+    """F_d halved and a parameter changed between two ticks: the contact force follows."""
+    half = [Aim((0.0, 0.0, 0.0), 0.5), change]
+    ticks, said = steer(study, case, 3000, 2400, half)
+    before, after = (tick.truth.wrenches[frame][2] for tick in (ticks[2390], ticks[-1]) if tick.truth is not None)
+    assert before == pytest.approx(force, rel=0.03)
+    assert after == pytest.approx(0.5 * force, rel=0.05)
+    assert not [note for note in said if isinstance(note, Note)]
+    assert any(isinstance(message, Ready) for message in said)
+
+
+def test_the_haptic_impedance_is_swapped_whole() -> None:
+    ticks, _ = steer("haptic", "floor", 600, 300, [{"impedance": {"force_max": (100.0, 100.0, 200.0)}}])
+    bounds = [
+        tick.reference.tasks[0].tuning.force_max[2] for tick in ticks if tick.reference.tasks[0].tuning is not None
+    ]
+    assert set(bounds) == {300.0, 200.0}
+    assert bounds.index(200.0) == 300
+
+
+def test_a_moved_target_travels_at_a_bounded_speed() -> None:
+    """A target that jumped would put energy into the robot that no ledger books."""
+    ticks, _ = steer("polishing", "ideal", 400, 100, [Aim((0.05, 0.0, 0.0))])
+    plain, _ = steer("polishing", "ideal", 400, 100, [])
+    moved = np.array(
+        [a.reference.tasks[0].position - b.reference.tasks[0].position for a, b in zip(ticks, plain, strict=True)]
+    )
+    speed = np.abs(np.diff(moved[:, 0])) / 1e-3
+    assert speed.max() <= TARGET_SPEED * (1.0 + 1e-6)
+    assert moved[-1, 0] == pytest.approx(0.05)
+    rate = np.array(
+        [a.reference.tasks[0].velocity[0] - b.reference.tasks[0].velocity[0] for a, b in zip(ticks, plain, strict=True)]
+    )
+    np.testing.assert_allclose(rate[1:], np.diff(moved[:, 0]) / 1e-3, atol=1e-6)
+
+
+def test_every_study_offers_something_to_turn() -> None:
+    for name in study_names():
+        for config in get_study(name).cases.values():
+            assert parameters_of(config) is not None or online_fields(config), f"{name} {config.case}"
