@@ -35,7 +35,8 @@ def steer(study_name: str, case: str, ticks: int, at: int, asks: Sequence[Any]) 
 
     pace = Pace(session.plant.period, attend, lambda seconds: None, paced=False)
     wired = session.experiment
-    outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), [seen.append])
+    watchers = [seen.append, session.watch]
+    outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), watchers)
     assert outcome.failure is None
     return seen, said
 

@@ -40,9 +40,8 @@ class Leaf:
     def label(self) -> str:
         """Name and unit, for the control."""
         name = self.path[-1].replace("_", " ")
-        unit = (
-            self.unit.replace("/", _SLASH).replace(" ", _SPACE).replace(f",{_SPACE}", ", ")
-        )  # a unit stays in one line
+        parts = [part.replace("/", _SLASH).replace(" ", _SPACE) for part in self.unit.split(", ")]
+        unit = ", ".join(parts)  # each unit stays in one line
         return f"{name} [{unit}]" if self.unit and self.unit != "1" else name
 
 

@@ -33,7 +33,7 @@ from pliant.live.scene_view import SceneView
 from pliant.live.seat import Seat
 from pliant.live.server import PageServer
 from pliant.live.target import TargetControls
-from pliant.live.tuning import online_fields, parameters_of
+from pliant.live.tuning import online_fields, online_group, parameters_of
 from pliant.live.world_form import SceneForm
 from pliant.simulation import Imperfections
 from pliant.studies.base import CaseConfig
@@ -180,12 +180,11 @@ class Page:
     def _tuning_form(self, config: CaseConfig) -> None:
         parameters = parameters_of(config)
         with self._tuning_tab:
-            gui, online = self._viser.gui, online_fields(config)
+            gui = self._viser.gui
             if parameters is not None and "control" in type(config).model_fields:
                 self._forms.append(Form(gui, self.seat, group_of(parameters), self._change_parameters))
-            elif online:
-                others = frozenset(type(config).model_fields) - online
-                self._forms.append(Form(gui, self.seat, group_of(config, skip=others), self._change_online))
+            elif online_fields(config):
+                self._forms.append(Form(gui, self.seat, online_group(config), self._change_online))
             else:
                 self._forms.append(gui.add_markdown("This controller has no parameters to turn."))
 

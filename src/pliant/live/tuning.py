@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pliant.entries import ControllerConfig, ControllerEntry
 from pliant.interfaces import Controller
+from pliant.live.fields import Group, Leaf, at, group_of
 from pliant.references.exploration_config import ExplorationConfig
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
@@ -34,11 +35,26 @@ def online_fields(config: CaseConfig) -> frozenset[str]:
     return frozenset(name for name, value in values.items() if _is_online(value))
 
 
+def online_group(config: CaseConfig) -> Group:
+    """The values of these parts; a law or a shape of an impedance is not a number that a reference carries."""
+    online = online_fields(config)
+    group = group_of(config, skip=frozenset(type(config).model_fields) - online)
+    kept: list[Leaf | Group] = []
+    for part in group.entries:
+        if isinstance(part, Group) and not isinstance(at(config, part.path), ExplorationConfig):
+            numbers = [entry for entry in part.entries if isinstance(entry, Group) or entry.kind != "choice"]
+            kept.append(replace(part, entries=tuple(numbers)))
+        else:
+            kept.append(part)
+    return replace(group, entries=tuple(kept))
+
+
 def retuning_of_case(config: CaseConfig) -> Retuning:
     """The same for the parts that `online_fields` names."""
     parts = [getattr(config, name) for name in sorted(online_fields(config))]
     frame = str(getattr(config, "frame", ""))
-    tunings = {frame: part.tuning() for part in parts if not isinstance(part, ExplorationConfig)}
+    tuning = next((part.tuning() for part in parts if not isinstance(part, ExplorationConfig)), None)
+    tunings = {} if tuning is None else {frame: tuning}
     whole = next((part for part in parts if isinstance(part, ExplorationConfig)), None)
     return Retuning(tunings, whole, None)
 
