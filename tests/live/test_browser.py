@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 import time
 
 import numpy as np
 import pytest
 
-from pliant.live.replay import LoggedScene
+from pliant.live.replay import LoggedScene, ReplayPage
+from pliant.live.server import PageServer
 from pliant.telemetry.log import Log
 from tests.live.conftest import PATIENCE, Live, until
 
@@ -138,6 +140,29 @@ def test_recording_and_replay(live: Live) -> None:
     error = 1e3 * (log["reference/flange/position"] - log["truth/flange/position"])
     first = columns.names.index("error.x")
     np.testing.assert_allclose(rows[:, first : first + 3], error, atol=1e-9)
+
+
+def test_a_log_on_the_page_with_a_time_slider(live: Live) -> None:
+    """The slider, dragged in the browser, says which instant of the log is drawn."""
+    shown = LoggedScene(Log.open(sorted(live.folder.glob("*.mcap"))[0]))
+    with PageServer("127.0.0.1", 0) as server:
+        replay = ReplayPage(server, shown)
+        thread = threading.Thread(target=replay.serve)
+        thread.start()
+        live.tab.goto(server.url)  # the page of the loop lives on without a browser
+        try:
+            live.tab.get_by_role("button", name="Pause").click()
+            live.tab.get_by_role("button", name="Play", exact=True).wait_for()
+            drag(live, "time", 0.5)
+            middle = 0.5 * (shown.time[0] + shown.time[-1])
+            until(lambda: abs(replay.time - middle) < 0.1 * (shown.time[-1] - shown.time[0]), "the middle of the log")
+            live.tab.get_by_text(f"t = {replay.time:.3f} s").wait_for()
+            live.shoot("replay")
+        finally:
+            replay.stop()
+            thread.join()
+            live.tab.goto(live.server.url)
+    live.tab.get_by_text("playing").wait_for()
 
 
 def test_a_second_browser_watches_takes_over_and_vanishes(live: Live) -> None:
