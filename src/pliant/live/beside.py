@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +35,7 @@ def beside(
     port: int,
     folder: Path,
     announce: Callable[[str, bool], None],
-) -> Iterator[Beside]:
+) -> Generator[Beside]:
     """A page for one run of this process; it goes when the run is over.
 
     Args:

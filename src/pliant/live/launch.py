@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -41,7 +41,7 @@ def serve_live(study: str, config: CaseConfig, host: str, port: int, folder: Pat
 
 
 @contextmanager
-def live_page(server: PageServer, folder: Path) -> Iterator[Page]:
+def live_page(server: PageServer, folder: Path) -> Generator[Page]:
     """A page and the process of its loop, which waits for a first `Begin`."""
     context = multiprocessing.get_context("spawn")
     near, far = context.Pipe()
@@ -59,7 +59,7 @@ def live_page(server: PageServer, folder: Path) -> Iterator[Page]:
 
 
 @contextmanager
-def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, bool], None]) -> Iterator[Link]:
+def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, bool], None]) -> Generator[Link]:
     """A page in a child process, for a loop that runs in this one.
 
     Args:
