@@ -115,6 +115,9 @@ class ExploredAxis:
         self._feel(rules, force, period)
         self._switch(rules, active, period)
         if self.phase is AxisPhase.CONTACT:
+            if self.retreat.began and self.stiffness < 0.5 * limits.stiffness:
+                self.retreat.end()  # a soft contact whose damping had made it seem stiff
+                self.retreat.waived = True
             lasting = self.retreat.lasting(force)
             if self.retreat.resting > 0.0:
                 self.forces.clear()  # the impedance switches: what the force does says nothing about the contact

@@ -51,30 +51,26 @@ def parameter_runs(config: HapticConfig) -> list[HapticConfig]:
 
 
 def parameter_figure(results: Sequence[Result]) -> Figure:
-    """Settling time of a force step up and down and peak force at first contact, against each parameter."""
+    """Settling time of a force step up and down, against each parameter; crosses never settle."""
     found = {r.config.variant: {m.name: m.value for m in r.metrics} for r in results if r.config.variant}
-    made = style.figure(10.0, 8.4, "What each parameter does: steps from 10 to 15 N and back to 10 N")
-    axes = made.subplots(4, 4)
-    for index, parameter in enumerate(PARAMETERS):
-        row, column = 2 * (index // 4), index % 4
-        _panel(axes[row, column], parameter, found, "settle, s", ("up", "down"))
-        _panel(axes[row + 1, column], parameter, found, "first contact, N", ("peak force",))
+    made = style.figure(11.0, 4.8, "What each parameter does: steps from 10 to 15 N and back to 10 N")
+    axes = made.subplots(2, 4).ravel()
+    for ax, parameter in zip(axes, PARAMETERS, strict=True):
+        _panel(ax, parameter, found)
+    style.legend(axes[3], outside=True)
     return made
 
 
-def _panel(
-    ax: Axes, parameter: Parameter, found: Mapping[str, Mapping[str, float]], ylabel: str, names: Sequence[str]
-) -> None:
-    style.dress(ax, parameter.label, ylabel)
-    ax.set_xscale("log")
-    x = np.array(parameter.values)
-    for index, (surface, name) in enumerate((s, n) for s in SURFACES for n in names):
-        y = np.array([found.get(f"{surface} · {parameter.label} · {v:g}", {}).get(name, np.nan) for v in x])
+def _panel(ax: Axes, parameter: Parameter, found: Mapping[str, Mapping[str, float]]) -> None:
+    style.dress(ax, parameter.label, "settle, s")
+    x = np.arange(len(parameter.values))
+    for index, (surface, name) in enumerate((s, n) for s in SURFACES for n in ("up", "down")):
+        runs = [found.get(f"{surface} · {parameter.label} · {value:g}", {}) for value in parameter.values]
+        y = np.array([run.get(name, np.nan) for run in runs])
         colour, finite = style.colour(index), np.isfinite(y)
-        ax.plot(
-            x[finite], y[finite], "o-", color=colour, linewidth=style.LINE, markersize=3.2, label=f"{surface}, {name}"
-        )
+        label = f"{surface}, {name}"
+        ax.plot(x[finite], y[finite], "o-", color=colour, linewidth=style.LINE, markersize=3.2, label=label)
         never = x[~finite]
         ax.plot(never, np.full(never.shape, 0.97 - 0.05 * index), "x", color=colour, transform=ax.get_xaxis_transform())
-    ax.set_ylim(bottom=0.0)
-    style.legend(ax)
+    ax.set_xticks(x, [f"{value:g}" for value in parameter.values])
+    ax.set_ylim(0.0, 0.5)
