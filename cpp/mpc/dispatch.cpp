@@ -18,19 +18,26 @@ struct InstructionSet {
 };
 
 const std::vector<InstructionSet> &instruction_sets() {
-#ifdef PLIANT_X86
     static const std::vector<InstructionSet> sets = [] {
+        std::vector<InstructionSet> found; // narrowest first
+#ifdef PLIANT_HAS_NEON
+        found.push_back({"neon", neon::select_kernel, true});
+#endif
+#ifdef PLIANT_HAS_SSE2
+        found.push_back({"sse2", sse2::select_kernel, true});
+#endif
+#ifdef PLIANT_HAS_AVX2
         __builtin_cpu_init();
         const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
+        found.push_back({"avx2", avx2::select_kernel, avx2});
+#endif
+#ifdef PLIANT_HAS_AVX512
         const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-        return std::vector<InstructionSet>{{"sse2", sse2::select_kernel, true},
-                                           {"avx2", avx2::select_kernel, avx2},
-                                           {"avx512", avx512::select_kernel, avx512}};
-    }();
-#else
-    static const std::vector<InstructionSet> sets = {{"neon", neon::select_kernel, true}};
+        found.push_back({"avx512", avx512::select_kernel, avx512});
 #endif
+        return found;
+    }();
     return sets;
 }
 

@@ -6,20 +6,25 @@ set(PLIANT_MPC_KERNEL_FLAGS -O2 -fno-math-errno -fno-trapping-math -ffp-contract
 set(PLIANT_MPC_FLAGS_avx2 -mavx2 -mfma -mbmi2)
 set(PLIANT_MPC_FLAGS_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mavx2 -mfma -mbmi2)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
-  set(PLIANT_MPC_ISAS sse2 avx2 avx512)
+  set(PLIANT_MPC_ISAS sse2 avx2 avx512 CACHE STRING "Copies of the MPC kernel; avx512 needs avx2")
 else()
-  set(PLIANT_MPC_ISAS neon)
+  set(PLIANT_MPC_ISAS neon CACHE STRING "Copies of the MPC kernel")
 endif()
 set(PLIANT_MPC_KERNEL_SOURCE ${CMAKE_CURRENT_LIST_DIR}/kernel/engine.cpp)
 
-# One object library PREFIX_isa per copy; their objects go to the variable named by RESULT. Further arguments: flags.
+# One object library PREFIX_isa per copy; their objects go to the variable named by RESULT, and what dispatch.cpp has to
+# know about which there are to PLIANT_MPC_ISA_DEFINITIONS. Further arguments: flags.
 function(pliant_mpc_kernel prefix result)
   set(objects)
+  set(definitions)
   foreach(isa IN LISTS PLIANT_MPC_ISAS)
     add_library(${prefix}_${isa} OBJECT ${PLIANT_MPC_KERNEL_SOURCE})
     target_compile_definitions(${prefix}_${isa} PRIVATE PLIANT_ISA=${isa})
     target_compile_options(${prefix}_${isa} PRIVATE ${PLIANT_MPC_KERNEL_FLAGS} ${PLIANT_MPC_FLAGS_${isa}} ${ARGN})
     list(APPEND objects $<TARGET_OBJECTS:${prefix}_${isa}>)
+    string(TOUPPER ${isa} name)
+    list(APPEND definitions PLIANT_HAS_${name})
   endforeach()
   set(${result} ${objects} PARENT_SCOPE)
+  set(PLIANT_MPC_ISA_DEFINITIONS ${definitions} PARENT_SCOPE)
 endfunction()
