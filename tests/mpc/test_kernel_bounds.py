@@ -181,3 +181,45 @@ def test_bounded_noisy_loop_converges() -> None:
     solutions = [solver.solve(noisy(x0, robot.model.nv, rng)) for _ in range(500)]
     assert sum(s.status == "converged" for s in solutions) >= 495
     assert max(s.violation for s in solutions if s.status == "converged") <= 1e-4
+
+
+@pytest.mark.parametrize("kind", ["classical", "torque_feedback"])
+def test_bounded_noisy_loop_with_a_rigid_contact_converges(kind: str) -> None:
+    """The force bound is active, its multiplier small beside the penalty: the active set must settle even so."""
+    robot = catalogue_chain("lwr4")
+    solver, x0, _ = bounded(kind, 3)
+    n, rest = robot.model.nv, solver.us[0]
+    solver.nodes.torque_lower, solver.nodes.torque_upper = rest - 20.0, rest + 20.0
+    solver.nodes.force_lower[:, 2], solver.nodes.force_upper[:, 2] = 0.0, 25.0
+    rng = np.random.default_rng(7)
+    solutions = [solver.solve(noisy(x0, n, rng), max_iterations=8) for _ in range(300)]
+    assert sum(s.status == "converged" for s in solutions) >= 297
+    assert np.mean([np.any(s.forces[1:, 2] >= 25.0 - 1e-3) for s in solutions]) > 0.9
+    assert np.mean([s.iterations for s in solutions]) < 2.5
+
+
+@pytest.mark.parametrize(
+    ("kind", "dim"), [("force_feedback", 1), ("classical", 1), ("classical", 3), ("torque_feedback", 1)]
+)
+def test_contradictory_bounds_end_with_an_honest_status(kind: str, dim: int) -> None:
+    """Joint torques of 1 N·m cannot hold the arm on a surface that gives 25 N; a force state cannot jump to 60 N."""
+    robot = catalogue_chain("lwr4")
+    solver, x0 = polishing(robot, kind, dim, bounds=True)
+    normal = min(dim, 3) - 1
+    solver.nodes.torque_lower, solver.nodes.torque_upper = -1.0, 1.0
+    solver.nodes.force_lower[:, normal], solver.nodes.force_upper[:, normal] = (
+        (60.0, 80.0) if kind == "force_feedback" else (0.0, 25.0)
+    )
+    rng = np.random.default_rng(8)
+    for _ in range(10):
+        solution = solver.solve(noisy(x0, robot.model.nv, rng))
+        assert solution.status in ("max_iterations", "line_search", "not_positive_definite")
+        assert solution.violation > 1e-2
+        assert solution.kkt >= (1.0 - 1e-6) * solution.violation
+        for values in (solution.us, solution.xs, solution.forces, solution.feedback_gain):
+            assert np.all(np.isfinite(values))
+    solver.nodes.torque_lower, solver.nodes.torque_upper = -1e3, 1e3  # once they can be kept, it recovers
+    solver.nodes.force_lower[:, normal] = 0.0
+    solver.reset()
+    solver.quasi_static(x0)
+    assert solver.solve(x0, max_iterations=50).status == "converged"

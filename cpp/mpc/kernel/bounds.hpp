@@ -132,6 +132,29 @@ PLIANT_INLINE double largest_difference(const StageBounds &b, const BoundVector 
     return worst;
 }
 
+// How far the multipliers are from what a local model predicted for them, beside their size. They are compared as
+// multipliers, not as ‖·‖/ρ in the bounds' units: small as the costs are, a row held by 1e-5 would pass for a free one.
+struct DualError {
+    double torque = 0, force = 0, torque_size = 0, force_size = 0;
+
+    void add(const StageBounds &b, const BoundVector &predicted, const BoundVector &actual) {
+        if (b.torque) {
+            torque = larger(torque, largest(absolute(predicted.torque - actual.torque)));
+            torque_size = larger(torque_size, largest(absolute(actual.torque)));
+        }
+        for (int i = 0; i < b.forces; ++i) add_force(predicted.force[i], actual.force[i]);
+        for (int i = 0; i < 3 && b.cone; ++i) add_force(predicted.cone[i], actual.cone[i]);
+    }
+    void add_force(double predicted, double actual) {
+        force = larger(force, magnitude(predicted - actual));
+        force_size = larger(force_size, magnitude(actual));
+    }
+    bool small() const {
+        constexpr double share = 1e-3;
+        return torque <= share * torque_size && force <= share * force_size;
+    }
+};
+
 // Distance to the feasible set: Σ |·| for the filter, ∞-norm for the report.
 struct Violation {
     double sum, worst;

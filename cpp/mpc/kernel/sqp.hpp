@@ -98,7 +98,7 @@ template <class L> class Solver {
     void forward(const Iterate<L> &it);
     bool newton_step(Report &report);
     void bounded_values(const Iterate<L> &it, int k, Lanes &torque, double *force) const;
-    double model_error(const Iterate<L> &it);
+    DualError model_error(const Iterate<L> &it);
     double update_multipliers();
     bool bounded_step(double tolerance, Report &report);
     double optimality(const Iterate<L> &it) const;
@@ -176,9 +176,9 @@ void Solver<L>::bounded_values(const Iterate<L> &it, int k, Lanes &torque, doubl
     }
 }
 
-// Brings the terms' local model to the current direction; returns by how much the old one was wrong there [N, N·m].
-template <class L> double Solver<L>::model_error(const Iterate<L> &it) {
-    double worst = 0;
+// Brings the terms' local model to the current direction; returns by how much the old one was wrong there.
+template <class L> DualError Solver<L>::model_error(const Iterate<L> &it) {
+    DualError error;
     for (int k = 0; k <= options.horizon; ++k) {
         Lanes torque;
         double force[max_contact];
@@ -186,9 +186,9 @@ template <class L> double Solver<L>::model_error(const Iterate<L> &it) {
         BoundVector predicted;
         predicted_gradient(bounds[k], terms[k], torque, force, predicted);
         bound_terms(bounds[k], multipliers[k], torque, force, terms[k]);
-        worst = larger(worst, largest_difference(bounds[k], predicted, terms[k].gradient) / penalty);
+        error.add(bounds[k], predicted, terms[k].gradient);
     }
-    return worst;
+    return error;
 }
 
 // y ← gradient of the terms; returns the primal-dual residual ‖z − Π_C(z + y/ρ)‖ that the old y left.
@@ -216,8 +216,8 @@ template <class L> bool Solver<L>::bounded_step(double tolerance, Report &report
         for (int k = 0; k <= N; ++k)
             bounded_expansion(bounds[k], terms[k], it.node[k], k < N ? it.u[k] : zero(), expansions[k]);
         if (!newton_step(report)) return false;
-        if (model_error(it) > tolerance) continue;      // the active set moved
-        if (update_multipliers() <= tolerance) break; // nothing left to move
+        if (!model_error(it).small()) continue;       // the active set moved
+        if (update_multipliers() <= tolerance) break; // within the bounds
     }
     return true;
 }
