@@ -32,10 +32,13 @@ CASES = [
     ("force_feedback", 3, True),
     ("force_feedback", 6, False),
     ("classical", 1, False),
+    ("classical", 1, True),
     ("classical", 3, False),
     ("classical", 3, True),
     ("torque_feedback", 1, False),
+    ("torque_feedback", 1, True),
     ("torque_feedback", 3, False),
+    ("torque_feedback", 3, True),
     ("free", 0, False),
 ]
 
@@ -109,15 +112,35 @@ class Loop:
             getattr(p, f"{name}_weight")[-1] *= scale * DT
 
     def set_bounds(self, dim: int, rest: Vector) -> None:
-        """A force reference of 40 N beyond its bound of 25 N, torques within 20 N·m of rest, a friction cone."""
+        """A force of 40 N wanted beyond its bound of 25 N, and 30 N along the surface, which the friction cone forbids.
+
+        Torques stay near rest, closely where the force can still be kept with them: a rigid contact that follows the
+        circle with 4 N·m has no feasible plan.
+        """
         p = self.solver.nodes
-        p.torque_lower = rest - 20.0
-        p.torque_upper = rest + 20.0
+        margin = 4.0 if (self.kind, dim) == ("force_feedback", 1) else 20.0  # N·m
+        p.torque_lower = rest - margin
+        p.torque_upper = rest + margin
         p.force_reference[:, self.normal] = 40.0
         p.force_lower[:, self.normal] = 0.0
         p.force_upper[:, self.normal] = 25.0
         if dim >= 3:
             p.friction = 0.5
+            p.force_reference[:, 0] = 30.0
+
+    def active_bounds(self, solution: _mpc.Solution) -> tuple[bool, bool, bool]:
+        """Whether the plan reaches a torque bound, a bound on the normal force, the friction cone, at any node."""
+        p, margin = self.solver.nodes, 1e-3  # margin in N, N·m
+        torques, forces = solution.us, solution.forces[1:]
+        torque = np.any(torques >= p.torque_upper[:-1] - margin) or np.any(torques <= p.torque_lower[:-1] + margin)
+        at_force = False
+        if forces.shape[1]:
+            i = self.normal
+            at_force = np.any(forces[:, i] >= p.force_upper[1:-1, i] - margin)
+            at_force |= np.any(forces[:, i] <= p.force_lower[1:-1, i] + margin)
+        tangential = np.linalg.norm(forces[:, :2], axis=1)
+        at_cone = forces.shape[1] >= 3 and np.any(p.friction[1:-1] * forces[:, 2] - tangential <= margin)
+        return bool(torque), bool(at_force), bool(at_cone)
 
     def cycle(self) -> tuple[_mpc.Solution, float, float]:
         """One tick: solution, CPU and wall time of the solve in s."""
@@ -136,9 +159,10 @@ class Loop:
 
 def solve_times(loop: Loop, cycles: int, pause: float = 0.0) -> dict[str, Any]:
     """Percentiles over the cycles, the first 5 % left out as a warm-up."""
-    cpu, wall, solutions = [], [], []
+    cpu, wall, solutions, active = [], [], [], []
     for _ in range(cycles):
         solution, c, w = loop.cycle()
+        active.append(loop.active_bounds(solution))
         cpu.append(c)
         wall.append(w)
         solutions.append(solution)
@@ -152,6 +176,7 @@ def solve_times(loop: Loop, cycles: int, pause: float = 0.0) -> dict[str, Any]:
         "evaluations": float(np.mean([s.evaluations for s in solutions])),
         "factorisations": float(np.mean([s.qp_iterations for s in solutions])),
         "converged": float(np.mean([s.status == "converged" for s in solutions])),
+        "active": dict(zip(("torque", "force", "cone"), np.mean(active, axis=0).tolist(), strict=True)),
         "worst_violation": max((s.violation for s in solutions if s.status == "converged"), default=float("nan")),
     }
 
@@ -202,6 +227,7 @@ def measure(
 
 HEADING = (
     "isa      model             dim bounds   median     p90     p99   yardst.  iter  fact.  conv.%  node  diff [µs]"
+    "   torque, force, cone at bound %"
 )
 
 
@@ -211,7 +237,8 @@ def line(row: dict[str, Any]) -> str:
     case = f"{row['isa']:8} {row['kind']:18}{row['dim']:2} {row['bounds']!s:6}"
     times = f"{cpu['median_us']:9.1f}{cpu['p90_us']:8.1f}{cpu['p99_us']:8.1f}{row['yardsticks']:9.2f}"
     work = f"{row['iterations']:7.2f}{row['factorisations']:6.2f}{100 * row['converged']:8.2f}"
-    return f"{case}{times}{work}{row['calc_us']:6.2f}{row['calc_diff_us']:6.2f}"
+    shares = "".join(f"{100 * share:5.0f}" for share in row["active"].values()) if row["bounds"] else ""
+    return f"{case}{times}{work}{row['calc_us']:6.2f}{row['calc_diff_us']:6.2f}      {shares}"
 
 
 def main(print_line: Callable[[str], None] = print) -> None:
