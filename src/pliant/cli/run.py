@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -63,7 +63,7 @@ def _page(
     experiment: Experiment,
     folder: Path,
     live: bool,
-) -> Iterator[dict[str, Any]]:
+) -> Generator[dict[str, Any], None, None]:
     """What `run_case` gets beside the run itself: with a page, a loop that the page can follow and steer."""
     if not live:
         yield {"experiment": experiment}

@@ -59,7 +59,7 @@ def run_case(
         outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), watchers)
         recorder.close(outcome.failure)
     log = recorder.log()
-    return _measured(study, config, wired, log, outcome.failure, folder if figures else None)
+    return _measured(study, config, wired, log, outcome.failure, folder, figures)
 
 
 def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> RunInfo:
@@ -84,12 +84,18 @@ def file_stem(config: CaseConfig) -> str:
 
 
 def _measured(
-    study: Study[Any], config: CaseConfig, wired: Experiment, log: Log, failure: str | None, folder: Path | None
+    study: Study[Any],
+    config: CaseConfig,
+    wired: Experiment,
+    log: Log,
+    failure: str | None,
+    folder: Path | None,
+    figures: bool,
 ) -> Result:
     path = folder / f"{file_stem(config)}.mcap" if folder is not None else None
     if failure is not None:
         return Result(config, (), failure, wired.warnings, path)
-    drawn = study.figures(config, wired, log, folder) if folder is not None else []
+    drawn = study.figures(config, wired, log, folder) if folder is not None and figures else []
     measured = study.metrics(config, log)
     return Result(config, measured, study.verdict(config, measured), wired.warnings, path, tuple(drawn))
 
