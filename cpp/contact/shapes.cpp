@@ -72,6 +72,13 @@ double first_reach(const Vec3& a, const Vec3& d, const Vec3& half, const double*
   return t[count - 1];
 }
 
+// Adds a value to a short sorted list.
+void insert_sorted(std::array<double, 8>& list, int& count, double value) {
+  int at = count++;
+  for (; at > 0 && list[at - 1] > value; --at) list[at] = list[at - 1];
+  list[at] = value;
+}
+
 // Parameter in [0, 1] of the point of a segment nearest to a box, both in the box's axes; the middle one if there are many.
 double nearest_on_segment(const Vec3& a, const Vec3& d, const Vec3& half) {
   std::array<double, 8> t{0.0, 1.0};
@@ -79,9 +86,8 @@ double nearest_on_segment(const Vec3& a, const Vec3& d, const Vec3& half) {
   for (int i = 0; i < 3; ++i)
     for (const double face : {-half[i], half[i]}) {
       const double crossing = std::abs(d[i]) > kTiny ? (face - a[i]) / d[i] : -1.0;
-      if (crossing > 0.0 && crossing < 1.0) t[count++] = crossing;
+      if (crossing > 0.0 && crossing < 1.0) insert_sorted(t, count, crossing);
     }
-  std::sort(t.begin(), t.begin() + count);
   const double level = 1e-9 * dot(d, d);  // below it the segment counts as parallel to the face
   const double low = first_reach(a, d, half, t.data(), count, -level);
   const double high = first_reach(a, d, half, t.data(), count, level);
