@@ -206,8 +206,8 @@ def test_bounds_reach_the_nodes() -> None:
     assert nodes.force_upper.max() == 80.0
 
 
-def test_three_controllers_are_offered_with_units() -> None:
-    assert set(CONTROLLERS) == {"force-feedback-mpc", "torque-feedback-mpc", "classical-mpc"}
+def test_the_controllers_are_offered_with_units() -> None:
+    assert set(CONTROLLERS) == {"force-feedback-mpc", "offset-free-mpc", "torque-feedback-mpc", "classical-mpc"}
     for name in ("dt", "period", "time_budget", "torque_bandwidth", "fallback_damping"):
         extra = MpcConfig.model_fields[name].json_schema_extra
         assert isinstance(extra, dict)

@@ -10,10 +10,10 @@ import pytest
 from pliant import loop
 from pliant.errors import ConfigError
 from pliant.signals import Tick
-from pliant.simulation.imperfect import ImperfectPlant
 from pliant.simulation.imperfections import Imperfections
 from pliant.studies.config import merged
-from pliant.studies.polishing import STUDY, PolishingConfig
+from pliant.studies.polishing import STUDY
+from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.runner import run_case
 from pliant.telemetry.summary import Metric
 
@@ -73,8 +73,8 @@ def test_half_the_physics_step_changes_little() -> None:
 @pytest.mark.parametrize("controller", THREE)
 def test_the_residual_is_reached_in_a_noisy_loop(controller: str) -> None:
     """Noise of [FFMPC] on every sensor, imperfect actuation, 8 iterations: KKT 1e-4 in 99.9 % of the solves."""
-    experiment = STUDY.build(_config(controller=controller, preset="paper"))
-    plant = ImperfectPlant(experiment.plant, Imperfections.p3(computation_delay=0.0), seed=3)
+    flaws = Imperfections.p3(computation_delay=0.0).model_dump()
+    experiment = STUDY.build(_config(controller=controller, preset="paper", imperfections=flaws, seed=3))
     residuals: list[float] = []
     torques: list[float] = []
 
@@ -82,7 +82,14 @@ def test_the_residual_is_reached_in_a_noisy_loop(controller: str) -> None:
         residuals.append(float(tick.command.diagnostics["mpc/kkt"]))
         torques.append(float(np.max(np.abs(tick.command.torque) / experiment.robot.torque_limit)))
 
-    outcome = loop.run(plant, experiment.estimator, experiment.source, experiment.controller, range(3500), [watch])
+    outcome = loop.run(
+        experiment.plant,
+        experiment.estimator,
+        experiment.source,
+        experiment.controller,
+        range(3500),
+        [watch],
+    )
     assert outcome.failure is None
     assert np.mean(np.array(residuals[::2]) <= 1e-4) >= 0.999
     assert max(torques) <= 1.0

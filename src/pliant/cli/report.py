@@ -20,7 +20,9 @@ def summarised(study: Study[Any], results: Sequence[Result]) -> Summary:
         config = result.config
         groups.setdefault((config.case, config.controller, config.variant), []).append(result)
     seeds = {result.config.seed for result in results}
-    return Summary(study.name, min(seeds, default=None), tuple(_case(*names, found) for names, found in groups.items()))
+    return Summary(
+        study.name, min(seeds, default=None), tuple(_case(study, *names, found) for names, found in groups.items())
+    )
 
 
 def save_summary(study: Study[Any], results: Sequence[Result], folder: Path) -> Path:
@@ -33,13 +35,13 @@ def print_results(console: Console, study: Study[Any], results: Sequence[Result]
     console.print(summary_table(summarised(study, results)))
 
 
-def _case(case: str, controller: str, variant: str, results: Sequence[Result]) -> Case:
+def _case(study: Study[Any], case: str, controller: str, variant: str, results: Sequence[Result]) -> Case:
     failures = tuple(f"seed {r.config.seed}: {r.failure}" for r in results if r.failure is not None)
     name = f"{controller} ({variant})" if variant else controller
     return Case(
         case=case,
         controller=name,
-        metrics=over_runs([r.metrics for r in results if r.failure is None]),
+        metrics=over_runs([r.metrics for r in results if r.failure is None], study.worst),
         runs=len(results),
         failures=failures,
         seeds=tuple(r.config.seed for r in results),

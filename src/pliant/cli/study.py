@@ -58,7 +58,8 @@ def study_command(
 def _finish(console: Console, study: Study[Any], results: Sequence[Result], folder: Path) -> None:
     summary = save_summary(study, results, folder)
     report = folder / "report.md"
-    write_text(report, f"# {study.title}\n\n{summary_markdown(summarised(study, results))}")
+    parts = (f"# {study.title}\n", study.report(results), summary_markdown(summarised(study, results)))
+    write_text(report, "\n".join(part for part in parts if part))
     print_results(console, study, results)
     figures = study.summary_figures(results, folder)
     for kind, path in [("summary", summary), ("report", report), *(("figure", figure) for figure in figures)]:

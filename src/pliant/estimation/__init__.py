@@ -7,15 +7,14 @@ from pliant.estimation.external_torque import ExternalTorqueEstimator
 from pliant.estimation.filtered import FilteredEstimator
 from pliant.estimation.filters import Butterworth, FirstOrder, LowPass
 from pliant.estimation.identification_poses import identification_poses
+from pliant.estimation.joint_state import JointStateFilter
 from pliant.estimation.momentum_observer import MomentumObserver
-from pliant.estimation.prediction import DelayPredictor, SoftContact
 from pliant.estimation.tool_identification import ToolIdentification, excitation, identify_tool
 from pliant.estimation.wrench import CarriedMass, TouchThresholds, WrenchEstimator
 
 __all__ = [
     "Butterworth",
     "CarriedMass",
-    "DelayPredictor",
     "DirectEstimator",
     "EnvironmentEstimator",
     "EnvironmentFit",
@@ -23,9 +22,9 @@ __all__ = [
     "FilteredEstimator",
     "FirstOrder",
     "FitConfig",
+    "JointStateFilter",
     "LowPass",
     "MomentumObserver",
-    "SoftContact",
     "ToolIdentification",
     "TouchThresholds",
     "WrenchEstimator",

@@ -38,6 +38,8 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
         normal: (3,) outward normal of the surface in the world. It must be the surface's: what slides along a surface
             and is measured along another direction moves without force.
         config: how the fit forgets and when it learns.
+        sliding: m/s of tangential speed above which nothing is learnt, for a normal that is not known exactly; None:
+            learn always.
 
     Raises:
         RobotError: a frame that the robot does not have.
@@ -53,8 +55,9 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
         *,
         normal: npt.ArrayLike = (0.0, 0.0, 1.0),
         config: FitConfig | None = None,
+        sliding: float | None = None,
     ) -> None:
-        self.inner, self.robot, self.frame = inner, robot, frame
+        self.inner, self.robot, self.frame, self.sliding = inner, robot, frame, sliding
         self.normal = unit_vector(normal, "normal")
         self.fit = EnvironmentFit(config or FitConfig(), period)
         self._frame = robot.frame_id(frame)
@@ -69,12 +72,14 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
         fit = state.fit
         if wrench is not None:
             model, data = self.robot.model, self._data
-            pin.forwardKinematics(model, data, measurement.q, measurement.v)
+            pin.forwardKinematics(model, data, estimate.q, estimate.v)
             position = pin.updateFramePlacement(model, data, self._frame).translation
             axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
             velocity = pin.getFrameVelocity(model, data, self._frame, axes).linear
             depth, rate = -float(self.normal @ position), -float(self.normal @ velocity)
-            fit = self.fit.step(float(self.normal @ np.asarray(wrench[:3])), depth, rate, fit)
+            sliding = float(np.linalg.norm(velocity + rate * self.normal))
+            if self.sliding is None or sliding <= self.sliding:
+                fit = self.fit.step(float(self.normal @ np.asarray(wrench[:3])), depth, rate, fit)
         if fit.found is not None:
             estimate = replace(estimate, environments={**estimate.environments, self.frame: fit.found})
         return estimate, EnvironmentState(inner, fit)

@@ -156,6 +156,7 @@ def with_scene(plant: MujocoPlant, scene: Scene) -> MujocoPlant:
         pushes=plant.pushes,
         links=plant.links,
         observe=list(plant.truth(world).positions),
+        speed_stop=plant.speed_stop,
     )
 
 

@@ -60,6 +60,54 @@ class Bounds(ControllerConfig):
         return self.torque or self.force_max is not None or self.friction is not None
 
 
+class Compensation(ControllerConfig):
+    """What makes a controller free of offsets and bear delays. Everything is off by default."""
+
+    disturbance: bool = Field(
+        default=False,
+        description="take the estimated disturbance out of the torque, and count it in the prediction over the delay",
+    )
+    sensing_delay: float = Field(
+        default=0.0, ge=0.0, le=0.1, description="age of a reading", json_schema_extra={"unit": "s"}
+    )
+    computation_delay: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=0.1,
+        description="from a reading to the effect of its command",
+        json_schema_extra={"unit": "s"},
+    )
+    averaging: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=0.1,
+        description="the torque that is sent is the mean over this time; it removes what rings in the drives",
+        json_schema_extra={"unit": "s"},
+    )
+    force_integral: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=200.0,
+        description="k_i: the force reference is shifted by k_i ∫ (reference − measured)",
+        json_schema_extra={"unit": "1/s"},
+    )
+    force_shift_max: float = Field(
+        default=20.0, gt=0.0, description="largest shift of the force reference", json_schema_extra={"unit": "N"}
+    )
+    environment: bool = Field(
+        default=False, description="let the estimated stiffness of the environment replace contact.stiffness"
+    )
+
+    @property
+    def delay(self) -> float:
+        """Age of a reading when the command that answers to it takes effect, s."""
+        return self.sensing_delay + self.computation_delay
+
+    @property
+    def any(self) -> bool:
+        return self != Compensation()
+
+
 class MpcConfig(ControllerConfig):
     """A predictive controller."""
 
@@ -99,6 +147,7 @@ class MpcConfig(ControllerConfig):
         default=10.0, gt=0.0, description="Σ|f(x, u) − x⁺| over states and nodes above which a solution is not used"
     )
     bounds: Bounds = Bounds()
+    compensation: Compensation = Compensation()
     costs: Costs = Costs()
     phases: dict[str, Phase] = Field(
         default={"free": Phase(), "contact": Phase(contact=True)},
@@ -117,6 +166,8 @@ class MpcConfig(ControllerConfig):
             raise ValueError("bounds.friction needs a contact of dimension 3 or 6, got 1")
         if self.kind == "torque_feedback" and self.between == "riccati":
             raise ValueError("between = 'riccati' needs the torque as control; torque feedback filters it: use 'hold'")
+        if self.between == "riccati" and (self.compensation.delay or self.compensation.averaging):
+            raise ValueError("between = 'riccati' answers to the present state: with delays or averaging use 'hold'")
         return self
 
 
@@ -155,6 +206,27 @@ class ForceFeedbackMpc(MpcConfig):
     )
     phases: dict[str, Phase] = _phases(
         _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
+    )
+
+
+class OffsetFreeMpc(ForceFeedbackMpc):
+    """Force feedback without offsets, for a robot whose readings are 1 ms and whose commands 5 ms late."""
+
+    contact: Contact = Contact(stiffness=(1e4,), damping=(1e2,))
+    compensation: Compensation = Compensation(
+        disturbance=True, sensing_delay=1e-3, computation_delay=5e-3, averaging=4e-3, force_integral=30.0
+    )
+    costs: Costs = Costs(
+        posture=Term(weight=0.002, activation=_POSTURE.activation),
+        joint_velocity=_JOINT_VELOCITY,
+        torque=Term(weight=1e-5),
+        rotation=Term(weight=20.0),
+        velocity=_VELOCITY,
+        force=Term(weight=0.03, terminal=0.15),
+        force_rate=Term(weight=6e-7),
+    )
+    phases: dict[str, Phase] = _phases(
+        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(1000.0, _PLANE)
     )
 
 

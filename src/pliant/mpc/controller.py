@@ -13,6 +13,7 @@ from pliant.errors import ConfigError, SignalError, options
 from pliant.interfaces import Controller
 from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
+from pliant.mpc.compensation import CompensationState, Compensator
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.horizon import HorizonReference, along_horizon
 from pliant.mpc.kernel import kernel_model, kernel_solver
@@ -41,6 +42,10 @@ class MpcState:
     """(n,) last finite velocities, rad/s"""
     next_solve: float
     """s"""
+    compensation: CompensationState
+    """torques under way and the shift of the force reference"""
+    disturbance: Array
+    """d̂ (n,), the last finite one, N·m; zero if it is not compensated"""
     plan: Plan | None = None
     phases: tuple[object, ...] = ()
     """what the weights in the nodes were written for"""
@@ -57,20 +62,26 @@ class MpcController(Controller[MpcState]):
     Between two solves it does what `config.between` says. Without a usable solution it follows the last usable plan to
     its end, then compensates gravity with joint damping. No torque that is not finite leaves it.
 
+    With `config.compensation` it solves from the state at which its command takes effect and takes the estimated
+    disturbance out of what it sends; see `Compensator`.
+
     Args:
         robot: serial, at most 8 joints.
         config: which model, costs, phases.
+        period: s from step to step; None: `config.period`, a solve at every step.
 
     Raises:
         RobotError: a robot that the kernel cannot take, an unknown frame.
-        ConfigError: weights that do not fit the robot, a stiffness outside the integrator's range.
+        ConfigError: weights that do not fit the robot, a stiffness outside the integrator's range, a delay that is not
+            a whole number of periods.
     """
 
-    def __init__(self, robot: Robot, config: MpcConfig) -> None:
+    def __init__(self, robot: Robot, config: MpcConfig, period: float | None = None) -> None:
         self.robot, self.config = robot, config
         self.problem: MpcProblem = problem_from_robot(robot, config)
         self.chain = chain_from_robot(robot, config.frame, config.contact.frame)
         self.model = kernel_model(self.problem)
+        self.compensator = Compensator(config.compensation, self.problem, self.chain, period or config.period)
         self._safe = SafeTorque(robot.model, config.fallback_damping)
         self._limit = robot.torque_limit
 
@@ -92,7 +103,17 @@ class MpcController(Controller[MpcState]):
         solver = kernel_solver(self.problem, self.chain, self.model)
         nodes = solver.nodes
         self.problem.write_constants(nodes)
-        return MpcState(solver, nodes, self.robot.model.createData(), q, q, v, next_solve=estimate.time)
+        return MpcState(
+            solver,
+            nodes,
+            self.robot.model.createData(),
+            q,
+            q,
+            v,
+            next_solve=estimate.time,
+            compensation=self.compensator.init(estimate),
+            disturbance=np.zeros(self.robot.n),
+        )
 
     def step(self, estimate: Estimate, reference: Reference, state: MpcState) -> tuple[Command, MpcState]:
         x = self._measured_state(estimate)
@@ -100,17 +121,23 @@ class MpcController(Controller[MpcState]):
             state.q, state.v = estimate.q, estimate.v
         if not all_finite(x):
             x = None
+        disturbance = self.compensator.disturbance(estimate)
+        if all_finite(disturbance):
+            state.disturbance = disturbance
         if estimate.time >= state.next_solve - _TICK:
             self._solve(estimate, reference, x, state)
             state.next_solve = estimate.time + self.config.period
         wanted, source = self._torque(estimate.time, x, state)
-        torque = np.clip(wanted, -self._limit, self._limit)
+        within = np.clip(wanted, -self._limit, self._limit)
+        torque, state.compensation = self.compensator.send(within, state.compensation)
         channels: Mapping[str, float | Array] = {
             **state.channels,
             "mpc/source": float(diagnostics.SOURCE_CODES[source]),
             "mpc/failures": float(state.failures),
+            "mpc/disturbance": state.disturbance,
+            "mpc/force_shift": state.compensation.force_shift,
         }
-        return Command(estimate.time, torque, wanted - torque, channels), state
+        return Command(estimate.time, torque, wanted - within, channels), state
 
     # ------------------------------------------------------------------ inside
 
@@ -121,7 +148,11 @@ class MpcController(Controller[MpcState]):
             state.failures += 1
             state.channels = diagnostics.of_no_solution(config.horizon, self.problem.m)
             return
-        horizon = along_horizon(reference, config.frame, config.horizon, config.dt)
+        horizon = along_horizon(reference, config.frame, config.horizon, config.dt, self.compensator.lead)
+        state.compensation = self.compensator.integrate(estimate, reference, state.touching, state.compensation)
+        horizon = self.compensator.shifted(horizon, state.compensation)
+        self._write_environment(estimate, state)
+        x = self.compensator.ahead(x, state.disturbance, self._touches(estimate, state), state.compensation)
         self._write_horizon(horizon, estimate, x, state)
         if state.plan is None or state.failures:
             state.solver.reset()
@@ -147,7 +178,22 @@ class MpcController(Controller[MpcState]):
             self.problem.write_phases(state.nodes, phases, oriented=horizon.rotation is not None)
             state.phases = key
         self.problem.write_references(state.nodes, horizon, state.posture)
+        self.problem.write_torque_bounds(state.nodes, state.disturbance)
         self._write_anchor(state, horizon, x)
+
+    def _write_environment(self, estimate: Estimate, state: MpcState) -> None:
+        """Lets the estimated stiffness along the normal, as far as the integrator bears it, replace the assumed one."""
+        believed = estimate.environments.get(self.problem.contact_frame)
+        if not self.config.compensation.environment or believed is None:
+            return
+        normal = 0 if self.problem.m == 1 else 2
+        for nodes in (state.nodes, self.compensator.contact):
+            nodes.stiffness[:, normal] = min(believed.stiffness, self.problem.stiffness_max)
+
+    def _touches(self, estimate: Estimate, state: MpcState) -> bool:
+        """Whether there is contact now. A rigid one also needs a phase that has it."""
+        touching = estimate.contacts.get(self.problem.contact_frame, state.touching)
+        return touching and (state.touching or self.config.kind == "force_feedback")
 
     def _write_anchor(self, state: MpcState, horizon: HorizonReference, x: Array) -> None:
         """Where the contact rests: where it began, or where the reference will be when it begins."""
@@ -190,5 +236,5 @@ class MpcController(Controller[MpcState]):
         if state.plan is not None:
             torque = torque_from(state.plan, time, x, self.config)
             if torque is not None and all_finite(torque):
-                return torque, "old plan" if state.failures else "plan"
+                return torque - state.disturbance, "old plan" if state.failures else "plan"
         return self._safe.at(state.data, state.q, state.v), "gravity and damping"

@@ -41,6 +41,8 @@ _UNITS = {
     "mpc/failures": "1",
     "mpc/deadline_missed": "1",
     "mpc/contact_nodes": "1",
+    "mpc/disturbance": "N·m",
+    "mpc/force_shift": "N",
     "mpc/predicted_path": "m",
     "mpc/predicted_force": "N, N·m",
 }

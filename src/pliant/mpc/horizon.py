@@ -29,8 +29,8 @@ class HorizonReference:
     """(N+1,) name of the phase of each node's own time"""
 
 
-def along_horizon(reference: Reference, frame: str, horizon: int, dt: float) -> HorizonReference:
-    """The reference at the nodes of a horizon that begins now.
+def along_horizon(reference: Reference, frame: str, horizon: int, dt: float, lead: float = 0.0) -> HorizonReference:
+    """The reference at the nodes of a horizon that begins now, or `lead` later.
 
     A preview is sampled at each node's own time, its phase too, so that a phase switch rolls through the horizon node
     by node. Without a preview the task goes on with its velocity, in its present phase.
@@ -40,14 +40,15 @@ def along_horizon(reference: Reference, frame: str, horizon: int, dt: float) -> 
         frame: tracked frame.
         horizon: N.
         dt: s between nodes.
+        lead: s from now to the first node.
 
     Raises:
         SignalError: there is no task for the frame, or a value is not finite.
     """
     if reference.preview is not None:
-        found = _sampled(reference.preview, reference.time + dt * np.arange(horizon + 1, dtype=np.float64))
+        found = _sampled(reference.preview, reference.time + lead + dt * np.arange(horizon + 1, dtype=np.float64))
     else:
-        found = _extrapolated(reference, frame, horizon, dt)
+        found = _extrapolated(reference, frame, lead + dt * np.arange(horizon + 1, dtype=np.float64))
     if not all_finite(
         found.position, found.velocity, found.wrench, *(() if found.rotation is None else (found.rotation,))
     ):
@@ -80,15 +81,15 @@ def _sampled(preview: Preview, times: Array) -> HorizonReference:
     )
 
 
-def _extrapolated(reference: Reference, frame: str, horizon: int, dt: float) -> HorizonReference:
+def _extrapolated(reference: Reference, frame: str, elapsed: Array) -> HorizonReference:
+    """Args: elapsed: (N+1,) s from now to each node."""
     task = next((task for task in reference.tasks if task.frame == frame), None)
     if task is None:
         got = [task.frame for task in reference.tasks]
         raise SignalError(f"the reference must have a task for frame {frame!r}, it has {got}")
-    count = horizon + 1
-    elapsed = dt * np.arange(count)[:, None]
+    count = len(elapsed)
     return HorizonReference(
-        position=task.position + elapsed * task.velocity[:3],
+        position=task.position + elapsed[:, None] * task.velocity[:3],
         rotation=None if task.rotation is None else np.tile(task.rotation, (count, 1, 1)),
         velocity=np.tile(task.velocity, (count, 1)),
         wrench=np.tile(task.wrench, (count, 1)),

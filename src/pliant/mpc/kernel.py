@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from pliant import _mpc
+from pliant.mpc.config import Kind
 from pliant.mpc.problem import MpcProblem
 
 
-def kernel_model(problem: MpcProblem) -> _mpc.Model:
-    """The compiled model of a problem."""
+def kernel_model(problem: MpcProblem, kind: Kind | None = None) -> _mpc.Model:
+    """The compiled model of a problem, or one of another kind with the same contact."""
     contact = problem.config.contact
     surface = problem.R_world_surface if contact.axes == "surface" else None
     return _mpc.Model(
-        problem.config.kind,
+        kind or problem.config.kind,
         problem.m,
         contact.axes,
         surface_rotation=surface,

@@ -36,6 +36,8 @@ class MpcProblem:
     """(3, 3), its third column is the normal"""
     weights: dict[str, dict[str, Array]]
     """phase → name in NodeParameters → (N+1, size)"""
+    stiffness_max: float
+    """N/m along the normal, up to which the force state can be integrated; infinite where there is none"""
 
     @property
     def m(self) -> int:
@@ -51,6 +53,12 @@ class MpcProblem:
     def contact_frame(self) -> str:
         return self.config.contact.frame or self.config.frame
 
+    @property
+    def normal(self) -> Array:
+        """(3,) outward normal of the surface in the world, as far as the problem knows one."""
+        surface = self.config.contact.axes == "surface"
+        return self.R_world_surface[:, 2] if surface else np.array([0.0, 0.0, 1.0])
+
     def nodes(self) -> PlainNodes:
         """Parameters of the horizon as plain arrays, constants filled in."""
         nodes = PlainNodes.zeros(self.config.horizon + 1, self.model.nq, self.model.nv, self.nu, self.m)
@@ -59,18 +67,26 @@ class MpcProblem:
 
     def write_constants(self, nodes: NodeParameters) -> None:
         """Writes what stays the same during a run: contact stiffness and damping, bounds."""
-        nodes.stiffness[...] = _filled(self.config.contact.stiffness, self.m)
-        nodes.damping[...] = _filled(self.config.contact.damping, self.m)
+        self.write_contact(nodes)
+        self.write_torque_bounds(nodes, np.zeros(self.nu))
         bounds = self.config.bounds
-        if bounds.torque:
-            nodes.torque_lower[...] = -self.torque_limit
-            nodes.torque_upper[...] = self.torque_limit
         if self.m and bounds.force_max is not None:
             normal = 0 if self.m == 1 else 2
             nodes.force_lower[:, normal] = 0.0
             nodes.force_upper[:, normal] = bounds.force_max
         if bounds.friction is not None:
             nodes.friction[...] = bounds.friction
+
+    def write_contact(self, nodes: NodeParameters) -> None:
+        """Writes stiffness and damping of the contact, as configured."""
+        nodes.stiffness[...] = _filled(self.config.contact.stiffness, self.m)
+        nodes.damping[...] = _filled(self.config.contact.damping, self.m)
+
+    def write_torque_bounds(self, nodes: NodeParameters, disturbance: Array) -> None:
+        """Writes the limits, if they are bounds, of a torque ũ of which ũ − disturbance (nu,) N·m is sent."""
+        if self.config.bounds.torque:
+            nodes.torque_lower[...] = disturbance - self.torque_limit
+            nodes.torque_upper[...] = disturbance + self.torque_limit
 
     def write_phases(self, nodes: NodeParameters, phases: Sequence[str], *, oriented: bool = True) -> None:
         """Gives each node the weights and the contact of its own phase.
@@ -170,10 +186,10 @@ def problem_from_model(model: pin.Model, config: MpcConfig, posture: Array) -> M
 def _bound(
     config: MpcConfig, name: str, model: pin.Model, driven: tuple[int, ...], limit: Array, posture: Array
 ) -> MpcProblem:
-    _check_contact_range(config, model, posture)
+    stiffness_max = _check_contact_range(config, model, posture)
     R = frame_with_z_along(config.contact.normal)
     weights = {phase: _weights(config, phase, model.nv, len(driven)) for phase in config.phases}
-    return MpcProblem(config, name, model, driven, limit, R, weights)
+    return MpcProblem(config, name, model, driven, limit, R, weights, stiffness_max)
 
 
 def _weights(config: MpcConfig, phase: str, nv: int, nu: int) -> dict[str, Array]:
@@ -200,16 +216,19 @@ def _weights(config: MpcConfig, phase: str, nv: int, nu: int) -> dict[str, Array
     return table
 
 
-def _check_contact_range(config: MpcConfig, model: pin.Model, posture: Array) -> None:
-    """The sampled force state must be stable: see docs/mpc.md for the two conditions."""
+def _check_contact_range(config: MpcConfig, model: pin.Model, posture: Array) -> float:
+    """The sampled force state must be stable: see docs/mpc.md for the two conditions. Returns the largest stiffness
+    along the normal for which it is."""
     if config.kind != "force_feedback":
-        return
+        return math.inf
     contact, dt = config.contact, config.dt
     inertia = _task_inertia(config, model, posture)
-    rows = zip(_filled(contact.stiffness, contact.dimension), _filled(contact.damping, contact.dimension), strict=True)
-    for axis, (K, B) in enumerate(rows):
-        if contact.integrator == "exponential":
-            stiffest = float(inertia[axis]) / dt**2
+    stiffness, damping = (_filled(values, contact.dimension) for values in (contact.stiffness, contact.damping))
+    exponential = contact.integrator == "exponential"
+    largest = inertia / dt**2 if exponential else (1.0 - 1e-6) * damping / dt
+    for axis, (K, B) in enumerate(zip(stiffness, damping, strict=True)):
+        if exponential:
+            stiffest = float(largest[axis])
             if stiffest < K:
                 raise ConfigError(
                     f"contact.stiffness of axis {axis}: the exponential integrator needs K dt² ≤ Λ, got K = {K:g} with"
@@ -220,6 +239,7 @@ def _check_contact_range(config: MpcConfig, model: pin.Model, posture: Array) ->
                 f"contact axis {axis}: the Euler integrator needs K dt < B and B dt < 2 Λ + K dt²/2, got K = {K:g}, B ="
                 f" {B:g}, dt = {dt:g} s, Λ = {inertia[axis]:.3g}; use integrator = 'exponential' or a shorter dt"
             )
+    return float(largest[0 if contact.dimension == 1 else 2])
 
 
 def _task_inertia(config: MpcConfig, model: pin.Model, posture: Array) -> Array:

@@ -7,7 +7,7 @@ from typing import Any
 
 from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError
-from pliant.mpc.config import ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.config import ClassicalMpc, ForceFeedbackMpc, MpcConfig, OffsetFreeMpc, TorqueFeedbackMpc
 from pliant.mpc.controller import MpcController
 from pliant.robot import Robot
 
@@ -23,7 +23,7 @@ def build_mpc(robot: Robot, config: MpcConfig, period: float) -> MpcController:
             f"period (time from solve to solve) must be at least the control period {period:g} s, got"
             f" {config.period:g} s"
         )
-    return MpcController(robot, config)
+    return MpcController(robot, config, period)
 
 
 CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
@@ -33,6 +33,12 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
             "force-feedback-mpc",
             "predictive, visco-elastic contact, the measured force is part of the state (Kleff et al. 2024)",
             ForceFeedbackMpc(),
+            build_mpc,
+        ),
+        ControllerEntry(
+            "offset-free-mpc",
+            "force feedback with disturbance observer, prediction over delays and force integral",
+            OffsetFreeMpc(),
             build_mpc,
         ),
         ControllerEntry(

@@ -56,6 +56,8 @@ class Lookahead:
     """N: there are N + 1 instants"""
     step: float
     """s between them"""
+    lead: float = 0.0
+    """s from now to the first of them: commands that take effect later want later references"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +166,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
     def _preview(self, state: PhaseState, time: float) -> Preview | None:
         if self.lookahead is None:
             return None
-        times = time + self.lookahead.step * np.arange(self.lookahead.nodes + 1, dtype=np.float64)
+        times = time + self.lookahead.lead + self.lookahead.step * np.arange(self.lookahead.nodes + 1, dtype=np.float64)
         tasks: list[TaskReference] = []
         names: list[str] = []
         for instant in times.tolist():

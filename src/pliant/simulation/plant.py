@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from pliant.errors import ConfigError
+from pliant.errors import ConfigError, RunFailedError
 from pliant.interfaces import Plant
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
@@ -58,6 +58,8 @@ class MujocoPlant(Plant[World]):
         pushes: disturbances.
         links: parts of the robot that touch things along their length, beside the frames with a contact radius.
         observe: more frames whose true pose is to be known; those that touch, sense or are pushed are in any case.
+        speed_stop: multiple of the joints' speed limits at which a run stops as failed, as a real arm stops; None:
+            never.
 
     Raises:
         ConfigError: the period is not a multiple of the physics step, or the step is too long for a contact.
@@ -78,6 +80,7 @@ class MujocoPlant(Plant[World]):
         pushes: Sequence[Push] = (),
         links: Sequence[LinkCapsule] = (),
         observe: Sequence[str] = (),
+        speed_stop: float | None = None,
     ) -> None:
         self.robot = robot
         self.scene = scene or Scene()
@@ -90,6 +93,8 @@ class MujocoPlant(Plant[World]):
         self.sensors = tuple(sensors)
         self.pushes = tuple(pushes)
         self.links = tuple(links)
+        self.speed_stop = speed_stop
+        self._fastest = np.full(robot.n, np.inf) if speed_stop is None else speed_stop * robot.velocity_limit
         self.start = robot.vector(robot.home if start is None else start, "start")
         frames = [*observe, *(s.frame for s in sensors), *(p.frame for p in pushes), *robot.contact_radius]
         frames += [link.start for link in self.links]
@@ -143,6 +148,7 @@ class MujocoPlant(Plant[World]):
         else:
             self._step_explicit(world, torque, self.explicit)
         world.ticks += 1
+        self._check_speed(world)
         return self._measure(world, torque), world
 
     def truth(self, world: World) -> Truth:
@@ -159,6 +165,16 @@ class MujocoPlant(Plant[World]):
         )
 
     # ------------------------------------------------------------------ inside
+
+    def _check_speed(self, world: World) -> None:
+        speed = np.abs(world.data.qvel[: self.robot.n])
+        if (speed <= self._fastest).all():
+            return
+        joint = int(np.argmax(speed / self._fastest))
+        raise RunFailedError(
+            f"joint {self.robot.joint_names[joint]} ran at {speed[joint]:.1f} rad/s; the robot stops at"
+            f" {self.speed_stop:g} times its speed limit"
+        )
 
     def _step_mujoco(self, world: World, torque: Array) -> None:
         for last in range(self.substeps - 1, -1, -1):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -73,6 +73,8 @@ class Study(ABC, Generic[C]):
     """name → its configuration; the first is the default"""
     controllers: Sequence[str]
     """names that `controller` can take"""
+    worst: Collection[str] = ()
+    """names of metrics that the worst run of a row decides; of the others it shows the mean"""
 
     def case(self, name: str) -> C:
         """Configuration of a case. Raises ConfigError, with the cases there are, if it does not exist."""
@@ -112,3 +114,7 @@ class Study(ABC, Generic[C]):
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         """Draws what only several runs together show."""
         return []
+
+    def report(self, results: Sequence[Result]) -> str:
+        """Tables as the paper prints them, in Markdown, for the study's report; empty where there are none."""
+        return ""

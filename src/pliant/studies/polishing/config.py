@@ -1,0 +1,174 @@
+"""Typed configuration of a polishing run.
+
+Source of the task: [FFMPC] Kleff, Jordana, Mansard, Righetti, "Force feedback in model predictive control: a soft
+contact approach", 2024, sections VI and VII. What the paper leaves open (height of the table, tool, ramps) is here.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from pliant.entries import ControllerEntry, find_entry
+from pliant.mpc import CONTROLLERS, MpcConfig
+from pliant.simulation import Imperfections
+from pliant.studies.base import CaseConfig
+from pliant.studies.config import Config, merged
+from pliant.studies.polishing.tuned import TUNED
+
+FRAME = "tool"
+BALL_RADIUS = 0.015  # m; the contact frame is its centre
+
+
+class Table(Config):
+    """The surface that is polished. The tool comes down at y = 0."""
+
+    height: float = Field(default=0.01, description="z of its surface", json_schema_extra={"unit": "m"})
+    height_error: float = Field(
+        default=0.0, description="by how much the controller believes it higher", json_schema_extra={"unit": "m"}
+    )
+    x: float = Field(default=0.65, description="x at which the tool comes down", json_schema_extra={"unit": "m"})
+    stiffness: float = Field(default=1e4, gt=0.0, json_schema_extra={"unit": "N/m"})
+    damping: float = Field(default=1e2, ge=0.0, json_schema_extra={"unit": "N·s/m"})
+    friction: float = Field(default=0.25, ge=0.0, description="Coulomb coefficient", json_schema_extra={"unit": "1"})
+    tilt: float = Field(
+        default=0.0,
+        description="about the world's x axis, unknown to the controller",
+        json_schema_extra={"unit": "rad"},
+    )
+
+
+class Task(Config):
+    """What the tool does. Times count from the start of the run."""
+
+    start: float = Field(
+        default=0.10, gt=0.0, description="height over the table where the run starts", json_schema_extra={"unit": "m"}
+    )
+    above: float = Field(
+        default=0.02, gt=0.0, description="height over the table where reach ends", json_schema_extra={"unit": "m"}
+    )
+    reach: float = Field(
+        default=0.5, gt=0.0, description="end of the motion above the table", json_schema_extra={"unit": "s"}
+    )
+    touch: float = Field(
+        default=1.0, gt=0.0, description="end of the descent; contact begins", json_schema_extra={"unit": "s"}
+    )
+    pressed: float = Field(
+        default=2.0, gt=0.0, description="end of the ramp of the force", json_schema_extra={"unit": "s"}
+    )
+    circle: float = Field(
+        default=3.0, gt=0.0, description="start of the circle or of the force steps", json_schema_extra={"unit": "s"}
+    )
+    light: float = Field(default=5.0, gt=0.0, description="force at first contact", json_schema_extra={"unit": "N"})
+    force: float = Field(default=50.0, gt=0.0, description="force of the circle", json_schema_extra={"unit": "N"})
+    pattern: Literal["circle", "square"] = Field(
+        default="circle", description="a circle under constant force, or force steps on one spot ([FFMPC] VII-B)"
+    )
+    low: float = Field(
+        default=20.0, gt=0.0, description="lower level of the force steps", json_schema_extra={"unit": "N"}
+    )
+    half_period: float = Field(
+        default=1.0, gt=0.0, description="time on each level of the force steps", json_schema_extra={"unit": "s"}
+    )
+    radius: float = Field(default=0.07, gt=0.0, description="of the circle", json_schema_extra={"unit": "m"})
+    speed: float = Field(default=3.0, gt=0.0, description="of the circle", json_schema_extra={"unit": "rad/s"})
+    ease: float = Field(
+        default=0.5, gt=0.0, description="time in which the circle starts from rest", json_schema_extra={"unit": "s"}
+    )
+    found: bool = Field(default=False, description="contact begins when it is felt, not by the timetable")
+
+
+class Estimation(Config):
+    """What stands between the sensors and the controller."""
+
+    joint_memory: float | None = Field(
+        default=None,
+        ge=0.0,
+        description="of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, else 0",
+        json_schema_extra={"unit": "s"},
+    )
+    observer_gain: float = Field(
+        default=30.0,
+        gt=0.0,
+        description="of the momentum observer, which runs where the controller asks for a disturbance",
+        json_schema_extra={"unit": "rad/s"},
+    )
+    wrench_cutoff: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="of a Butterworth filter of the contact wrench; none: unfiltered",
+        json_schema_extra={"unit": "Hz"},
+    )
+
+
+class Pushes(Config):
+    """Pushes by a person: a constant force in a random horizontal direction on another frame, again and again."""
+
+    frame: str = Field(default="flange", description="that is pushed")
+    force: float = Field(default=20.0, gt=0.0, description="of one push", json_schema_extra={"unit": "N"})
+    duration: float = Field(default=0.5, gt=0.0, description="of one push", json_schema_extra={"unit": "s"})
+    gap: float = Field(default=0.8, gt=0.0, description="between two pushes", json_schema_extra={"unit": "s"})
+    start: float = Field(default=4.0, ge=0.0, description="of the first push", json_schema_extra={"unit": "s"})
+
+
+class PolishingConfig(CaseConfig):
+    """One run of the polishing task."""
+
+    controller: str = Field(default="force-feedback-mpc", description="name of the controller")
+    robot: str = Field(
+        default="iiwa14", description="catalogue name, or path of a URDF or MJCF file with a frame 'flange'"
+    )
+    locked: dict[str, float] = Field(
+        default={"A7": 0.0}, description="joint → angle at which it is fixed", json_schema_extra={"unit": "rad"}
+    )
+    duration: float = Field(default=10.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    period: float = Field(default=1e-3, gt=0.0, description="control period", json_schema_extra={"unit": "s"})
+    physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
+    table: Table = Table()
+    task: Task = Task()
+    imperfections: Imperfections = Field(default=Imperfections(), description="of sensors, drives and computation")
+    unknown_mass: float = Field(
+        default=0.0,
+        ge=0.0,
+        description="of the tool, beside its known 0.4 kg",
+        json_schema_extra={"unit": "kg"},
+    )
+    delay_error: float = Field(
+        default=0.0,
+        description="of δ_o in controllers that predict: believed minus true",
+        json_schema_extra={"unit": "s"},
+    )
+    pushes: Pushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
+    estimation: Estimation = Estimation()
+    preset: Literal["tuned", "paper"] = Field(
+        default="tuned",
+        description="what `control` starts from: tuned for this plant, or the weights of the paper's authors",
+    )
+    control: dict[str, Any] = Field(
+        default={}, description="changes to the controller's parameters, e.g. control.contact.stiffness=[1e4]"
+    )
+
+    @property
+    def entry(self) -> ControllerEntry[Any]:
+        """The chosen controller."""
+        return find_entry(CONTROLLERS, self.controller)
+
+    @property
+    def perfect(self) -> bool:
+        """Whether sensors, drives and computation are perfect."""
+        return self.imperfections == Imperfections()
+
+    def parameters(self) -> MpcConfig:
+        """The controller's parameters: its defaults, those of this study, what is known of the robot's delays, then
+        `control`."""
+        changes = TUNED.get(self.controller, {}) if self.preset == "tuned" else {}
+        config: MpcConfig = merged(merged(self.entry.default, changes), self.control)
+        chosen = self.control.get("compensation", {})
+        if not config.compensation.delay or "sensing_delay" in chosen or "computation_delay" in chosen:
+            return config
+        delays = {
+            "sensing_delay": self.imperfections.sensing.delay,
+            "computation_delay": max(self.imperfections.computation_delay + self.delay_error, 0.0),
+        }
+        return merged(config, {"compensation": delays})

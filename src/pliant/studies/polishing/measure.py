@@ -1,0 +1,75 @@
+"""Metrics of a polishing run, on the true signals; [FFMPC] section VI defines the first ones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from pliant.spatial import Array
+from pliant.studies.polishing.config import FRAME, PolishingConfig
+from pliant.studies.polishing.paper import paper_number
+from pliant.studies.polishing.targets import targets_of
+from pliant.telemetry import metrics as of
+from pliant.telemetry.log import Log
+from pliant.telemetry.summary import Metric
+
+WORST = ("λ_max", "λ_dev", "t_break", "first contact peak")
+"""metrics that the worst run decides"""
+_LANDING = 0.1  # s after the first contact that still count as landing
+
+
+def measure(config: PolishingConfig, log: Log) -> tuple[Metric, ...]:
+    """Errors from the start of the circle, contact breaks from the end of the ramp, the peak of the first contact.
+
+    E_λ and E_P as the paper takes them (world z, horizontal), then along the table's normal and in its plane, then as
+    the authors' program computes E_λ (measured force, moving average of 21 samples).
+    """
+    task = config.task
+    time = log.time(f"truth/{FRAME}/wrench")
+    working = of.between(time, task.circle)
+    force, wanted = log[f"truth/{FRAME}/wrench"][:, :3], log[f"reference/{FRAME}/wrench"][:, 2]
+    position = 1e3 * (log[f"truth/{FRAME}/position"] - log[f"reference/{FRAME}/position"])  # mm
+    off_normal, off_plane = _in_table_axes(config, force, wanted, position)
+    measured = of.moving_average(log[f"estimate/{FRAME}/wrench"][:, 2])
+    torque = of.mae(log["truth/torque"][working], log["measurement/torque_sent"][working])
+    zeros = np.zeros_like(off_plane[working])
+    found = {
+        "E_λ": (of.mae(force[working, 2], wanted[working]), "N"),
+        "E_P": (of.mae(position[working, :2], zeros), "mm"),
+        "E_τ": (torque, "N·m"),
+        "λ_max": (of.peak(force[working, 2]), "N"),
+        "λ_dev": (of.max_error(force[working, 2], wanted[working]), "N"),
+        "t_break": (100.0 * of.break_share(force[of.between(time, task.pressed), 2]), "%"),
+        "first contact peak": (_first_peak(config, time, force[:, 2]), "N"),
+        "E_λ along the normal": (float(np.mean(np.abs(off_normal[working]))), "N"),
+        "E_P in the table's plane": (of.mae(off_plane[working], zeros), "mm"),
+        "E_λ as the authors filter": (of.mae(measured[working], wanted[working]), "N"),
+        "KKT reached": (100.0 * float(np.mean(log["mpc/status"] == 0.0)), "%"),
+        "iterations": (float(np.mean(log["mpc/iterations"])), "1"),
+    }
+    targets = targets_of(config)
+    loop = config.imperfections.torque_loop.gain_p > 0.0
+    return tuple(
+        Metric(name, value, unit, paper_number(config.case, config.controller, name, loop), targets.get(name))
+        for name, (value, unit) in found.items()
+    )
+
+
+def _first_peak(config: PolishingConfig, time: Array, force: Array) -> float:
+    """Largest normal force from the descent until shortly after the first contact, N."""
+    task = config.task
+    touching = np.flatnonzero(force > 0.0)
+    first = float(time[touching[0]]) if touching.size else task.touch
+    return of.peak(force[of.between(time, task.reach, max(task.touch, first) + _LANDING)])
+
+
+def _in_table_axes(
+    config: PolishingConfig, force: Array, wanted: Array, position: Array
+) -> tuple[Array, npt.NDArray[np.float64]]:
+    """Normal force minus what is wanted (n,), and position errors in the table's plane (n, 2)."""
+    tilt = config.table.tilt
+    normal = np.array([0.0, -math.sin(tilt), math.cos(tilt)])
+    along = np.array([0.0, math.cos(tilt), math.sin(tilt)])
+    return force @ normal - wanted, np.column_stack([position[:, 0], position @ along])

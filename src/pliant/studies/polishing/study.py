@@ -1,0 +1,50 @@
+"""The study."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from pliant.mpc import CONTROLLERS
+from pliant.studies.base import Experiment, Result, Study
+from pliant.studies.polishing import draw, tables
+from pliant.studies.polishing.build import build
+from pliant.studies.polishing.cases import CASES, runs_of
+from pliant.studies.polishing.config import PolishingConfig
+from pliant.studies.polishing.measure import WORST, measure
+from pliant.telemetry.log import Log
+from pliant.telemetry.summary import Metric
+
+
+class Polishing(Study[PolishingConfig]):
+    """[FFMPC] Kleff et al. 2024, sections VI and VII, and beyond."""
+
+    name = "polishing"
+    title = "press on a table and draw a circle: classical, torque-feedback, force-feedback and offset-free MPC"
+    cases = CASES
+    controllers = tuple(CONTROLLERS)
+    worst = WORST
+
+    def runs(self, case: str, seeds: int | None = None) -> Sequence[PolishingConfig]:
+        return runs_of(self.case(case), seeds)
+
+    def shows(self, config: PolishingConfig) -> bool:
+        return config.seed == 0 and config.case in draw.DRAWN and config.variant in ("", "PID", "no PID")
+
+    def build(self, config: PolishingConfig) -> Experiment:
+        return build(config)
+
+    def metrics(self, config: PolishingConfig, log: Log) -> tuple[Metric, ...]:
+        return measure(config, log)
+
+    def figures(self, config: PolishingConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+        return draw.run_figures(config, experiment, log, folder)
+
+    def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
+        return draw.summary_figures(results, folder)
+
+    def report(self, results: Sequence[Result]) -> str:
+        return tables.report(results)
+
+
+STUDY = Polishing()
