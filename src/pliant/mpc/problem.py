@@ -58,9 +58,11 @@ class MpcProblem:
         return nodes
 
     def write_constants(self, nodes: NodeParameters) -> None:
-        """Writes what stays the same during a run: contact stiffness and damping, bounds."""
+        """Writes what stays the same during a run: the contact's stiffness, damping and friction, bounds."""
         nodes.stiffness[...] = _filled(self.config.contact.stiffness, self.m)
         nodes.damping[...] = _filled(self.config.contact.damping, self.m)
+        if self.config.contact.friction is not None:
+            nodes.sliding_friction[...] = self.config.contact.friction
         bounds = self.config.bounds
         if bounds.torque:
             nodes.torque_lower[...] = -self.torque_limit
