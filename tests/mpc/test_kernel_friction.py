@@ -49,7 +49,7 @@ def test_node_and_twin_agree(dim: int, axes: str, normal: float, motion: str) ->
             assert np.all(np.abs(value - expected) <= 1e-10 * np.max(np.abs(expected), initial=1.0))
         assert np.all(got.force_rate[:2] != without.force_rate[:2])
         np.testing.assert_array_equal(got.force_rate[2:], without.force_rate[2:])  # normal force and moments
-        np.testing.assert_allclose(got.x_next[14:], x[14:] + twin.dt * got.force_rate, rtol=1e-12)
+        np.testing.assert_allclose(got.x_next[14:], x[14:] + twin.dt * got.force_rate, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize(("dim", "axes", "normal"), CASES)
@@ -76,8 +76,8 @@ def test_derivatives_of_the_tangential_force_rate(dim: int, axes: str, normal: f
         result, step = node.calc_diff(x, u), 1e-7 if motion == STICKING else 1e-6
         by_x, by_u = (np.asarray(part)[14:16] / twin.dt for part in (result.fx, result.fu))
         by_x[:, 14:16] -= np.eye(2) / twin.dt
-        # δẋ moves λ̇ by K: an error of ε |λ̇| / step beside it is rounding
-        scale = 1e4 * np.max(np.abs(by_x)) / 1e4 + 1e-9 * np.max(np.abs(result.force_rate)) / step
+        # the second part is what rounding of λ̇ leaves, 1e-16 |λ̇| / step, over the tolerance
+        scale = np.max(np.abs(by_x)) + 1e-9 * np.max(np.abs(result.force_rate)) / step
         for got, expected in (
             (by_x, difference(lambda z: node.calc(z, u).force_rate[:2], x, step)),
             (by_u, difference(lambda z: node.calc(x, z).force_rate[:2], u, step)),
@@ -153,17 +153,20 @@ def test_instruction_sets_agree(isa: str) -> None:
 # ---------------------------------------------------------------------- solver
 
 
-def sliding_solver(dim: int, speed: float, friction: float) -> tuple[_mpc.Solver, Vector]:
+def sliding_solver(
+    dim: int, speed: float, friction: float, *, tangential_costs: bool = False
+) -> tuple[_mpc.Solver, Vector]:
     """The polishing problem on a stiff contact, moving along x at `speed` m/s, from a state that does."""
     robot = catalogue_chain("lwr4")
     solver, x0 = polishing(robot, "force_feedback", dim)
     p, n, q = solver.nodes, robot.model.nv, robot.home
     p.stiffness[:, :2], p.damping[:, :2] = 1e4, 60.0
     p.sliding_friction = friction
+    if not tangential_costs:
+        p.force_weight[:, :2] = p.force_rate_weight[:, :2] = 0.0
     p.translation_reference[:, 0] += speed * solver.dt * np.arange(solver.horizon + 1)
     p.velocity_reference[:, 0] = speed
-    place = lambda at: robot.chain.contact_placement(at)[1]  # noqa: E731
-    jacobian = difference(place, q)
+    jacobian = difference(lambda at: robot.chain.contact_placement(at)[1], q)
     x0[n : 2 * n] = np.linalg.pinv(jacobian) @ [speed, 0.0, 0.0]
     if speed:
         x0[2 * n] = -0.25 * x0[2 * n + 2]
@@ -173,15 +176,19 @@ def sliding_solver(dim: int, speed: float, friction: float) -> tuple[_mpc.Solver
 
 @pytest.mark.parametrize("dim", [3, 6])
 @pytest.mark.parametrize("speed", [0.0, 0.05, 0.5])
-def test_noisy_loop_converges_as_without_friction(dim: int, speed: float) -> None:
+@pytest.mark.parametrize("tangential_costs", [False, True])
+def test_warm_noisy_loop_converges_as_without_friction(dim: int, speed: float, tangential_costs: bool) -> None:
+    """KKT 1e-4 within eight iterations, by the measure of the models without friction; the measured force is that of
+    μ = 0.25, what the model believes is that, less and more."""
     iterations = {}
-    for friction in (np.inf, 0.25):
-        solver, x0 = sliding_solver(dim, speed, friction)
+    for friction in (np.inf, 0.25, 0.15, 0.4):
+        solver, x0 = sliding_solver(dim, speed, friction, tangential_costs=tangential_costs)
+        solver.solve(x0, max_iterations=50)  # the first plan is no near state
         rng = np.random.default_rng(12)
-        solutions = [solver.solve(noisy(x0, 7, rng)) for _ in range(500)]
-        assert sum(s.status == "converged" and s.iterations <= 8 and s.kkt <= 1e-4 for s in solutions) == 500
+        solutions = [solver.solve(noisy(x0, 7, rng)) for _ in range(1000)]
+        assert sum(s.kkt <= 1e-4 and s.iterations <= 8 for s in solutions) >= 999, friction
         iterations[friction] = np.mean([s.iterations for s in solutions])
-    assert iterations[0.25] < iterations[np.inf] + 1.5
+    assert max(iterations.values()) < iterations[np.inf] + 1.0
 
 
 def test_it_converges_through_a_reversal() -> None:
