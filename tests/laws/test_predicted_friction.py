@@ -6,6 +6,8 @@ step.
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -48,7 +50,7 @@ class Slider:
         """(k, 3) N in contact axes: the force at the start of each step, when moved with (k, 3) m/s in contact axes."""
         x = np.concatenate([np.zeros(3), self.R @ velocity[0], [0.0, 0.0, normal]])
         forces = [x[6:]]
-        for now, after in zip(velocity[:-1], velocity[1:], strict=True):
+        for now, after in itertools.pairwise(velocity):
             acceleration = (after - now) / self.dt
             x = self.node.calc(x, self.R @ (MASS * acceleration - forces[-1])).x_next
             forces.append(x[6:])

@@ -62,27 +62,29 @@ def test_derivatives_while_sliding(dim: int, axes: str, normal: float) -> None:
 
 @pytest.mark.parametrize(("dim", "axes", "normal"), CASES)
 @pytest.mark.parametrize("motion", [STICKING, SLIDING])
-def test_derivatives_of_the_tangential_force_rate(dim: int, axes: str, normal: float, motion: str) -> None:
+@pytest.mark.parametrize("friction", [0.1, 0.6])
+def test_derivatives_of_the_tangential_force_rate(
+    dim: int, axes: str, normal: float, motion: str, friction: float
+) -> None:
     """By themselves, so that larger derivatives do not hide them; stiff, with axes of different stiffness.
 
     The law bends within 1 mm/s at rest: the step must be small against that.
     """
-    for seed, friction in ((6, 0.1), (7, 0.6)):
-        robot = random_chain(7, seed)
-        node, twin = node_and_twin(robot, "force_feedback", dim, axes, seed)
-        node.parameters.stiffness[:, :2], node.parameters.damping[:, :2] = (1e4, 4e3), (60.0, 30.0)
-        node.parameters.sliding_friction = friction
-        x, u = point(node, twin, motion, normal, seed)
-        result, step = node.calc_diff(x, u), 1e-7 if motion == STICKING else 1e-6
-        by_x, by_u = (np.asarray(part)[14:16] / twin.dt for part in (result.fx, result.fu))
-        by_x[:, 14:16] -= np.eye(2) / twin.dt
-        # the second part is what rounding of λ̇ leaves, 1e-16 |λ̇| / step, over the tolerance
-        scale = np.max(np.abs(by_x)) + 1e-9 * np.max(np.abs(result.force_rate)) / step
-        for got, expected in (
-            (by_x, difference(lambda z: node.calc(z, u).force_rate[:2], x, step)),
-            (by_u, difference(lambda z: node.calc(x, z).force_rate[:2], u, step)),
-        ):
-            assert np.max(np.abs(got - expected)) <= 3e-6 * scale
+    robot = random_chain(7, 6)
+    node, twin = node_and_twin(robot, "force_feedback", dim, axes, 6)
+    node.parameters.stiffness[:, :2], node.parameters.damping[:, :2] = (1e4, 4e3), (60.0, 30.0)
+    node.parameters.sliding_friction = friction
+    x, u = point(node, twin, motion, normal, 6)
+    result, step = node.calc_diff(x, u), 1e-7 if motion == STICKING else 1e-6
+    by_x, by_u = (np.asarray(part)[14:16] / twin.dt for part in (result.fx, result.fu))
+    by_x[:, 14:16] -= np.eye(2) / twin.dt
+    # the second part is what rounding of λ̇ leaves, 1e-16 |λ̇| / step, over the tolerance
+    scale = np.max(np.abs(by_x)) + 1e-9 * np.max(np.abs(result.force_rate)) / step
+    for got, expected in (
+        (by_x, difference(lambda z: node.calc(z, u).force_rate[:2], x, step)),
+        (by_u, difference(lambda z: node.calc(x, z).force_rate[:2], u, step)),
+    ):
+        assert np.max(np.abs(got - expected)) <= 3e-6 * scale
 
 
 def test_infinite_friction_is_no_friction() -> None:
