@@ -47,7 +47,8 @@ struct NodeData {
     double anchor_translation[3], anchor_rotation[9];
     double torque_lower[max_joints], torque_upper[max_joints];
     double force_lower[max_contact], force_upper[max_contact];
-    double friction;
+    double friction;         // of the cone on the force
+    double sliding_friction; // of the predicted contact
     bool contact_active;
 };
 

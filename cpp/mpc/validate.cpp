@@ -57,6 +57,15 @@ struct NodeCheck {
                        d.stiffness[i], " · ", dt, " against ", d.damping[i], " at component ", i,
                        ": use integrator 'exponential', or a shorter step");
     }
+    void sliding_friction(double mu, const ModelData &model) const {
+        if (!(mu > 0)) reject("sliding_friction must be positive (infinite: none), but node ", index, " has ", mu);
+        if (std::isinf(mu)) return;
+        if (model.kind != Kind::force_feedback || model.contact_dim < 3)
+            reject("sliding_friction needs kind 'force_feedback' with contact_dim 3 or 6, but node ", index, " has ", mu);
+        if (model.integrator == Integrator::exponential)
+            reject("sliding_friction needs integrator 'euler': 'exponential' solves the contact without it, but node ", index,
+                   " has ", mu);
+    }
     void interval(const char *name, const double *lower, const double *upper, int count) const {
         for (int i = 0; i < count; ++i)
             if (!(lower[i] <= upper[i]))
@@ -115,6 +124,7 @@ void validate(const NodeData &d, int index, int dof, const ModelData &model, dou
     check.references("force_reference", d.force_reference, m);
     check.interval("force", d.force_lower, d.force_upper, m);
     if (!(d.friction >= 0)) reject("friction must not be negative, but node ", index, " has ", d.friction);
+    check.sliding_friction(d.sliding_friction, model);
     if (!d.contact_active) return;
     if (model.kind == Kind::force_feedback || model.kind == Kind::naive_viscoelastic) {
         check.positive("stiffness", d.stiffness, m);

@@ -159,6 +159,8 @@ class Nodes:
     force_lower: NDArray[np.float64]  # (M, m) [N, N·m], −inf: no bound
     force_upper: NDArray[np.float64]  # (M, m)
     friction: NDArray[np.float64]  # (M,) μ of ‖(λ_x, λ_y)‖ ≤ μ λ_z, dimension 3 and 6; inf: no cone
+    sliding_friction: NDArray[np.float64]  # (M,) μ at which the predicted contact slides, force feedback with Euler,
+    # dimension 3 and 6; inf: it sticks
     def copy_node(self, source: int, target: int) -> None:
         """Copy all parameters of one node to another."""
 

@@ -24,13 +24,21 @@ def polishing_arm() -> Robot:
     return Robot.load("iiwa14", locked={"A7": 0.0}, tool=Tool())
 
 
-def config(kind: str = "force_feedback", dimension: int = 1, axes: str = "world", **changes: object) -> MpcConfig:
+def config(
+    kind: str = "force_feedback",
+    dimension: int = 1,
+    axes: str = "world",
+    *,
+    friction: float | None = None,
+    **changes: object,
+) -> MpcConfig:
     """A problem with every cost term on, in contact. Baumgarte's spring is off where the Python model has none."""
     costs = {name: Term(weight=1.0) for name in Costs.model_fields}
     contact = Contact.model_validate(
         {
             "dimension": dimension,
             "axes": axes,
+            "friction": friction,
             "normal": (0.3, 0.2, 1.0),
             "baumgarte": (5.0 if dimension < 6 else 0.0, 10.0),
             "stiffness": (1e3,) * min(dimension, 3) + (20.0,) * max(dimension - 3, 0),

@@ -11,7 +11,7 @@ import pinocchio as pin
 import pytest
 
 from pliant.errors import ConfigError, MissingExtraError
-from pliant.mpc.config import Bounds, ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.config import Bounds, ClassicalMpc, Contact, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
 from pliant.mpc.nodes import copy_nodes
 from pliant.mpc.problem import problem_from_model
 from pliant.spatial import Array
@@ -26,6 +26,7 @@ from pliant.mpc.crocoddyl_bridge import shooting_problem  # noqa: E402
 OFFSET = np.array([0.01, 0.01, 0.0])  # m
 REGULARISATION = 1e-9
 THREE = [ForceFeedbackMpc(), ClassicalMpc(), TorqueFeedbackMpc()]
+SLIDING = ForceFeedbackMpc(contact=Contact(dimension=3, friction=0.3, stiffness=(1e3,), damping=(20.0,)))
 
 
 def _mim(problem: Any, xs: Array, us: Array, iterations: int, tolerance: float) -> Any:
@@ -38,7 +39,7 @@ def _mim(problem: Any, xs: Array, us: Array, iterations: int, tolerance: float) 
     return solver
 
 
-@pytest.mark.parametrize("settings", THREE, ids=lambda c: c.kind)
+@pytest.mark.parametrize("settings", [*THREE, SLIDING], ids=[*(c.kind for c in THREE), "sliding"])
 @pytest.mark.parametrize("nodes_from", ["kernel", "pinocchio"])
 def test_mim_solvers_takes_the_same_iterations_to_the_same_torques(settings: MpcConfig, nodes_from: str) -> None:
     robot = polishing_arm()

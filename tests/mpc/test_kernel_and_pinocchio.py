@@ -48,12 +48,16 @@ def _arms() -> dict[str, Robot]:
 ARMS = _arms()
 
 
-@pytest.mark.parametrize(("kind", "dimension", "axes"), CASES)
+@pytest.mark.parametrize(
+    ("kind", "dimension", "axes", "friction"),
+    [(*case, None) for case in CASES]
+    + [("force_feedback", dimension, axes, 0.3) for dimension in (3, 6) for axes in AXES],
+)
 @pytest.mark.parametrize("name", list(ARMS))
-def test_both_nodes_yield_the_same(name: str, kind: str, dimension: int, axes: str) -> None:
+def test_both_nodes_yield_the_same(name: str, kind: str, dimension: int, axes: str, friction: float | None) -> None:
     """The contact is at another frame than the placement costs, on the running and on the last node."""
     robot = ARMS[name]
-    settings = config(kind, dimension, axes, frame="side")
+    settings = config(kind, dimension, axes, friction=friction, frame="side")
     settings = settings.model_copy(update={"contact": settings.contact.model_copy(update={"frame": "flange"})})
     problem = problem_from_robot(robot, settings)
     chain = chain_from_robot(robot, "side", "flange")

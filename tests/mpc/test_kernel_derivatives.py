@@ -29,9 +29,9 @@ CASES = [
 ]
 
 
-def difference(f: Callable[[Vector], Vector], z: Vector) -> Vector:
+def difference(f: Callable[[Vector], Vector], z: Vector, step: float = STEP) -> Vector:
     """(len f, len z) Jacobian by central differences."""
-    columns = [(f(z + STEP * e) - f(z - STEP * e)) / (2 * STEP) for e in np.eye(len(z))]
+    columns = [(f(z + step * e) - f(z - step * e)) / (2 * step) for e in np.eye(len(z))]
     return np.array(columns).T
 
 

@@ -69,6 +69,15 @@ def test_derivatives_match_finite_differences(kind: str, dimension: int, axes: s
     assert max(errors.values()) < 3e-6, errors
 
 
+@pytest.mark.parametrize(("dimension", "axes"), list(itertools.product((3, 6), AXES)))
+@pytest.mark.parametrize("friction", [0.05, 0.7])
+def test_derivatives_of_a_contact_that_slides(dimension: int, axes: str, friction: float) -> None:
+    robot = polishing_arm()
+    sliding = problem_from_robot(robot, config("force_feedback", dimension, axes, friction=friction))
+    errors = _errors(sliding, terminal=False)
+    assert max(errors.values()) < 3e-6, errors
+
+
 @pytest.mark.parametrize("kind", ["force_feedback", "classical", "torque_feedback", "free"])
 def test_derivatives_on_a_tree_with_a_free_base(kind: str) -> None:
     model = pin.buildSampleModelHumanoid()

@@ -94,6 +94,17 @@ def test_wrong_terms_are_refused(values: dict[str, Any], message: str) -> None:
         ({"contact": {"stiffness": (1e3, 1e3)}}, "has 2 entries, the contact has 1"),
         ({"contact": {"dimension": 2}}, "1, 3 or 6"),
         ({"bounds": {"friction": 0.5}}, "dimension 3 or 6"),
+        ({"contact": {"dimension": 3, "friction": 0.0}}, "greater than 0"),
+        ({"contact": {"dimension": 3, "friction": -0.3}}, "greater than 0"),
+        ({"contact": {"friction": 0.3}}, r"contact\.friction needs a contact of dimension 3 or 6, got 1"),
+        (
+            {"kind": "classical", "contact": {"dimension": 3, "friction": 0.3}},
+            "of kind 'force_feedback', got.*'classical'",
+        ),
+        (
+            {"contact": {"dimension": 3, "friction": 0.3, "integrator": "exponential"}},
+            r"contact\.friction needs contact\.integrator = 'euler', got 'exponential'",
+        ),
         ({"horizon": 0}, "greater than or equal to 1"),
         ({"kind": "torque_feedback", "between": "riccati"}, "use 'hold'"),
     ],
@@ -169,6 +180,15 @@ def test_published_weights_arrive_in_the_nodes() -> None:
     np.testing.assert_allclose(rigid["control_gravity_weight"][0], 1e-9)
     classical = problem_from_robot(polishing_arm(), ClassicalMpc()).weights["contact"]
     np.testing.assert_allclose(classical["translation_weight"], 2.0)
+
+
+def test_friction_of_the_contact_is_not_that_of_the_cone() -> None:
+    sliding = problem_from_robot(polishing_arm(), config("force_feedback", 3, friction=0.3))
+    assert sliding.nodes().sliding_friction.tolist() == [0.3] * 6
+    assert np.all(np.isinf(sliding.nodes().friction))
+    bounded = problem_from_robot(polishing_arm(), config("force_feedback", 3, bounds={"friction": 0.5}))
+    assert np.all(np.isinf(bounded.nodes().sliding_friction))
+    assert bounded.nodes().friction.tolist() == [0.5] * 6
 
 
 def test_an_unknown_phase_lists_the_known_ones() -> None:

@@ -92,6 +92,14 @@ class Twin:
         right = np.concatenate([torque - self.bias(q, v), -drift - kd * speed - kp * self.deflection(q)])
         return -np.linalg.solve(kkt, right)[n:]
 
+    def slid(self, rate: Vector, force: Vector) -> Vector:
+        """(2,) tangential force after a step of a bristle that gives way, from the rate (2,) of one that does not."""
+        K, mu = self.parameters.stiffness[0, :2], self.parameters.sliding_friction[0]
+        motion = -rate / K  # ẋ + (B/K) ẍ
+        speed = motion @ motion / np.sqrt(motion @ motion + 1e-3**2)
+        limit = mu * (force[2] / 2 + np.sqrt(force[2] ** 2 / 4 + 1.0**2))
+        return limit * (force[:2] + self.dt * rate) / (limit + self.dt * K * speed)
+
     def __call__(self, x: Vector, u: Vector) -> tuple[Vector, float, Vector, Vector]:
         """x_next (nx,), cost, λ (m,), λ̇ (m,)."""
         n, p, on = self.model.nv, self.parameters, self.parameters.contact_active[0]
@@ -104,6 +112,8 @@ class Twin:
         if self.kind == "force_feedback":
             if on:  # [FFMPC] eq. 18
                 rate = -p.stiffness[0] * speed - p.damping[0] * (jacobian @ acceleration + drift)
+                if np.isfinite(p.sliding_friction[0]):
+                    rate[:2] = (self.slid(rate[:2], extra) - extra[:2]) / self.dt
             next_extra = extra + self.dt * rate
         if self.kind == "torque_feedback":  # [FFMPC] eq. 13
             alpha = np.exp(-2 * np.pi * self.bandwidth * self.dt)

@@ -28,6 +28,7 @@ struct PyNodes {
                 d.force_upper[i] = inf;
             }
             d.friction = inf;
+            d.sliding_friction = inf;
             d.contact_active = m.contact_dim > 0;
         }
     }
@@ -76,6 +77,12 @@ template <class Member> void def_array(nb::class_<PyNodes> &c, const char *name,
     });
 }
 
+inline void def_number(nb::class_<PyNodes> &c, const char *name, double NodeData::*member) {
+    def_field(c, name, [member](nb::handle self) {
+        return field_view<double>(self, &(nb::cast<PyNodes &>(self).data[0].*member), {});
+    });
+}
+
 inline void bind_nodes(nb::module_ &m) {
     const Shape joints = [](const PyNodes &n) { return std::vector<size_t>{size_t(n.dof)}; };
     const Shape state = [](const PyNodes &n) { return std::vector<size_t>{size_t(2 * n.dof)}; };
@@ -107,9 +114,8 @@ inline void bind_nodes(nb::module_ &m) {
     def_array(c, "torque_upper", &NodeData::torque_upper, joints);
     def_array(c, "force_lower", &NodeData::force_lower, contact);
     def_array(c, "force_upper", &NodeData::force_upper, contact);
-    def_field(c, "friction", [](nb::handle self) {
-        return field_view<double>(self, &nb::cast<PyNodes &>(self).data[0].friction, {});
-    });
+    def_number(c, "friction", &NodeData::friction);
+    def_number(c, "sliding_friction", &NodeData::sliding_friction);
     def_field(c, "contact_active", [](nb::handle self) {
         return field_view<bool>(self, &nb::cast<PyNodes &>(self).data[0].contact_active, {});
     });

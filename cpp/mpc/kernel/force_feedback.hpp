@@ -1,6 +1,7 @@
 // Force feedback [FFMPC section V-C]: state (q, v, λ), control τ, visco-elastic contact as dynamics of λ.
 #pragma once
 #include "node.hpp"
+#include "sliding_friction.hpp"
 
 namespace pliant::mpc::PLIANT_ISA {
 
@@ -180,6 +181,16 @@ template <class L>
         const double drift = sum(c.J[f] * n.acceleration), acceleration = drift + c.drift[f];
         mean_force[f] += k.mean_acceleration * drift;
         n.force_rate[f] = -active * (k.velocity * c.speed[f] + k.acceleration * acceleration + k.force * force[f]);
+    }
+    [[maybe_unused]] SlidingRate slide;
+    if constexpr (M >= 3) {
+        if (s.slides) {
+            sliding_rate(s, n.force_rate, force, slide);
+            for (int f = 0; f < 2; ++f) n.force_rate[f] = slide.rate[f];
+        }
+    }
+#pragma GCC unroll 6
+    for (int f = 0; f < M; ++f) {
         n.x_next.add(L::force_lane(f), s.dt * n.force_rate[f]);
         n.cost += 0.5 * s.force_rate_weight[f] * n.force_rate[f] * n.force_rate[f];
     }
@@ -190,6 +201,9 @@ template <class L>
     LoadedDerivatives<J> ld;
     loaded_derivatives<J>(chain, p, c, contact_wrench(c, mean_force, M), n.acceleration, s.active, ld);
     force_feedback_tangent(p, c, s, ld, active, exponential, n);
+    if constexpr (M >= 3) {
+        if (s.slides) apply_sliding_tangent(slide, n);
+    }
     const double cost = n.cost;
 #pragma GCC unroll 6
     for (int f = 0; f < M; ++f)

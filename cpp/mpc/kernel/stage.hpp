@@ -15,10 +15,12 @@ struct alignas(64) Stage {
     double force_reference[max_contact], force_weight[max_contact], force_rate_weight[max_contact];
     double stiffness[max_contact], damping[max_contact];
     ForceStep step[max_contact];
+    double sliding_friction;
     Vec anchor;
     Mat anchor_rotation;
     double dt;
     bool active, terminal;
+    bool slides; // the tangential force is limited by friction
 };
 
 struct Discretisation {
@@ -58,6 +60,8 @@ inline void make_stage(const NodeData &data, const ModelData &model, const Discr
     s.angular_weight = vec(data.velocity_weight + 3) * w;
     s.anchor = vec(data.anchor_translation);
     s.anchor_rotation = mat(data.anchor_rotation);
+    s.sliding_friction = data.sliding_friction;
+    s.slides = s.active && isfinite(data.sliding_friction);
     for (int c = 0; c < model.contact_dim; ++c) {
         const double on = s.active ? w : 0;
         s.force_reference[c] = data.force_reference[c];

@@ -117,16 +117,19 @@ NodeData parameters(int dof, const double *home, bool bounded) {
     }
     d.force_reference[0] = 5; // [N], beyond the bound
     d.friction = bounded ? 0.5 : inf;
+    d.sliding_friction = inf;
     d.contact_active = true;
     return d;
 }
 
-void solve_repeatedly(int dof, const ModelData &m, bool bounded, const char *name) {
+void solve_repeatedly(int dof, const ModelData &m, bool bounded, const char *name,
+                      double sliding_friction = std::numeric_limits<double>::infinity()) {
     constexpr int N = 5;
     const ChainData chain = arm(dof);
     double home[max_joints];
     for (int i = 0; i < dof; ++i) home[i] = i % 2 ? 0.6 : 0.1;
     std::vector<NodeData> nodes(N + 1, parameters(dof, home, bounded));
+    for (NodeData &node : nodes) node.sliding_friction = sliding_friction;
     validate(chain);
     validate(m);
     validate(nodes[0], 0, dof, m, 3e-3);
@@ -163,6 +166,8 @@ void run() {
             if (dof < 7) continue;
             solve_repeatedly(dof, model(Kind::force_feedback, 3, Axes::surface, Integrator::euler), false, "force 3");
             solve_repeatedly(dof, model(Kind::force_feedback, 6, Axes::world, Integrator::euler), false, "force 6");
+            solve_repeatedly(dof, model(Kind::force_feedback, 3, Axes::local, Integrator::euler), bounded, "sliding 3", 0.3);
+            solve_repeatedly(dof, model(Kind::force_feedback, 6, Axes::surface, Integrator::euler), false, "sliding 6", 0.3);
             solve_repeatedly(dof, model(Kind::classical, 1, Axes::world, Integrator::euler), bounded, "classical 1");
             solve_repeatedly(dof, model(Kind::classical, 3, Axes::local, Integrator::euler), false, "classical 3");
             solve_repeatedly(dof, model(Kind::torque_feedback, 1, Axes::world, Integrator::euler), bounded, "torque 1");

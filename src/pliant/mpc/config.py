@@ -37,6 +37,12 @@ class Contact(ControllerConfig):
     integrator: Literal["euler", "exponential"] = Field(
         default="euler", description="of the force: 'euler' [FFMPC] eq. 24, 'exponential' for stiff contacts"
     )
+    friction: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="Coulomb coefficient of the predicted contact, force feedback in dimension 3, 6; None: it sticks",
+        json_schema_extra={"unit": "1"},
+    )
     baumgarte: tuple[float, float] = Field(
         default=(0.0, 0.0),
         description="rigid contact: position and velocity gain of Baumgarte",
@@ -164,11 +170,29 @@ class MpcConfig(ControllerConfig):
                 raise ValueError(f"contact.{name} must be above zero on every axis, got {list(value)}")
         if self.bounds.friction is not None and self.contact.dimension == 1:
             raise ValueError("bounds.friction needs a contact of dimension 3 or 6, got 1")
+        self._check_sliding()
         if self.kind == "torque_feedback" and self.between == "riccati":
             raise ValueError("between = 'riccati' needs the torque as control; torque feedback filters it: use 'hold'")
         if self.between == "riccati" and (self.compensation.delay or self.compensation.averaging):
             raise ValueError("between = 'riccati' answers to the present state: with delays or averaging use 'hold'")
         return self
+
+    def _check_sliding(self) -> None:
+        contact = self.contact
+        if contact.friction is None:
+            return
+        if self.kind != "force_feedback":
+            raise ValueError(
+                f"contact.friction is part of the model of kind 'force_feedback', got kind {self.kind!r}: leave it out,"
+                " or bound the force with bounds.friction"
+            )
+        if contact.dimension == 1:
+            raise ValueError("contact.friction needs a contact of dimension 3 or 6, got 1")
+        if contact.integrator == "exponential":
+            raise ValueError(
+                "contact.friction needs contact.integrator = 'euler', got 'exponential', which solves a contact that"
+                " does not slide"
+            )
 
 
 def _phases(track: Term, contact: Term, circle: Term) -> dict[str, Phase]:

@@ -39,6 +39,7 @@ class NodeParameters(Protocol):
     force_lower: Array
     force_upper: Array
     friction: Array
+    sliding_friction: Array
 
 
 @dataclass
@@ -73,6 +74,7 @@ class PlainNodes:
     force_lower: Array
     force_upper: Array
     friction: Array
+    sliding_friction: Array
 
     @staticmethod
     def zeros(count: int, nq: int, nv: int, nu: int, m: int) -> PlainNodes:
@@ -107,6 +109,7 @@ class PlainNodes:
             force_lower=np.full((count, m), -np.inf),
             force_upper=np.full((count, m), np.inf),
             friction=np.full(count, np.inf),
+            sliding_friction=np.full(count, np.inf),
         )
 
 

@@ -17,6 +17,7 @@ from pliant.errors import ConfigError
 from pliant.mpc.nodes import PlainNodes
 from pliant.mpc.pinocchio_contact import ContactGeometry, ContactMotion
 from pliant.mpc.problem import AXES_OF_DIMENSION, MpcProblem
+from pliant.mpc.sliding_friction import sliding_rate
 from pliant.spatial import Array
 
 
@@ -191,11 +192,11 @@ class PinocchioNode:
         wrench = self._contact.local_wrench(self.data, force)
         a_x = M_inverse @ (torque_x - self._inverse_dynamics_x(q, v, a, wrench) + motion.J.T @ force_x)
         a_u = M_inverse @ torque_u
-        rate, rate_x, rate_u = self._force_rate(motion, a_x, a_u)
+        rate, rate_x, rate_u = self._force_rate(motion, e, a_x, a_u)
         return _Dynamics(a, a_x, a_u, force, force_x, np.zeros((self.problem.m, self.nu)), rate, rate_x, rate_u)
 
-    def _force_rate(self, motion: ContactMotion, a_x: Array, a_u: Array) -> tuple[Array, Array, Array]:
-        """λ̇ and its derivatives, [FFMPC] eq. 18 and 23; zero where the force is no state."""
+    def _force_rate(self, motion: ContactMotion, e: Array, a_x: Array, a_u: Array) -> tuple[Array, Array, Array]:
+        """λ̇ and its derivatives, [FFMPC] eq. 18 and 23, with friction; zero where the force is no state."""
         nv, m = self.model.nv, self.problem.m
         if self.problem.config.kind != "force_feedback":
             return np.zeros(m), np.zeros((m, self.ndx)), np.zeros((m, self.nu))
@@ -205,7 +206,14 @@ class PinocchioNode:
         acceleration_x[:, :nv] += motion.acceleration_q
         acceleration_x[:, nv : 2 * nv] += motion.acceleration_v
         rate = -K * motion.velocity - B * motion.acceleration
-        return rate, -K[:, None] * velocity_x - B[:, None] * acceleration_x, -B[:, None] * (motion.J @ a_u)
+        rate_x, rate_u = -K[:, None] * velocity_x - B[:, None] * acceleration_x, -B[:, None] * (motion.J @ a_u)
+        friction = float(self.parameters.sliding_friction[0])
+        if m >= 3 and math.isfinite(friction):
+            slide = sliding_rate(rate[:2], e[:3], K[:2], friction, self.problem.config.dt)
+            rate[:2] = slide.rate
+            rate_x[:2], rate_u[:2] = slide.by_sticking @ rate_x[:2], slide.by_sticking @ rate_u[:2]
+            rate_x[:2, 2 * nv : 2 * nv + 3] += slide.by_force
+        return rate, rate_x, rate_u
 
     def _step(self, q: Array, v: Array, e: Array, u: Array, d: _Dynamics) -> tuple[Array, Array, Array]:
         """Semi-implicit Euler, [FFMPC] eq. 8, 14, 24."""

@@ -66,7 +66,7 @@ class MpcProblem:
         return nodes
 
     def write_constants(self, nodes: NodeParameters) -> None:
-        """Writes what stays the same during a run: contact stiffness and damping, bounds."""
+        """Writes what stays the same during a run: the contact, bounds."""
         self.write_contact(nodes)
         self.write_torque_bounds(nodes, np.zeros(self.nu))
         bounds = self.config.bounds
@@ -78,9 +78,11 @@ class MpcProblem:
             nodes.friction[...] = bounds.friction
 
     def write_contact(self, nodes: NodeParameters) -> None:
-        """Writes stiffness and damping of the contact, as configured."""
+        """Writes stiffness, damping and friction of the contact, as configured."""
         nodes.stiffness[...] = _filled(self.config.contact.stiffness, self.m)
         nodes.damping[...] = _filled(self.config.contact.damping, self.m)
+        if self.config.contact.friction is not None:
+            nodes.sliding_friction[...] = self.config.contact.friction
 
     def write_torque_bounds(self, nodes: NodeParameters, disturbance: Array) -> None:
         """Writes the limits, if they are bounds, of a torque ũ of which ũ − disturbance (nu,) N·m is sent."""
