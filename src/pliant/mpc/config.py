@@ -234,11 +234,20 @@ class ForceFeedbackMpc(MpcConfig):
 
 
 class OffsetFreeMpc(ForceFeedbackMpc):
-    """Force feedback without offsets, for a robot whose readings are 1 ms and whose commands 5 ms late."""
+    """Force feedback without offsets, for a robot whose readings are 1 ms and whose commands 5 ms late.
 
-    contact: Contact = Contact(stiffness=(1e4,), damping=(1e2,))
+    It starts from a stiff contact, with which it is stable on soft and stiff ones, and then takes the stiffness that is
+    estimated.
+    """
+
+    contact: Contact = Contact(stiffness=(3e4,), damping=(1e2,), integrator="exponential")
     compensation: Compensation = Compensation(
-        disturbance=True, sensing_delay=1e-3, computation_delay=5e-3, averaging=4e-3, force_integral=30.0
+        disturbance=True,
+        sensing_delay=1e-3,
+        computation_delay=5e-3,
+        averaging=4e-3,
+        force_integral=30.0,
+        environment=True,
     )
     costs: Costs = Costs(
         posture=Term(weight=0.002, activation=_POSTURE.activation),

@@ -110,7 +110,9 @@ def estimator_of(config: PolishingConfig, robot: Robot, parameters: MpcConfig) -
         estimator = EnvironmentEstimator(estimator, robot, FRAME, config.period, config=fit, sliding=_SLIDING)
     if wanted.disturbance:
         late = round(config.imperfections.sensing.delay / config.period)
-        estimator = MomentumObserver(estimator, robot, gain=settings.observer_gain, late_readings=late)
+        explained = "normal" if parameters.contact.dimension == 1 else "all"
+        gain = settings.observer_gain
+        estimator = MomentumObserver(estimator, robot, gain=gain, contact=explained, late_readings=late)
     return estimator
 
 

@@ -12,6 +12,8 @@ from pliant.studies.polishing.build import build
 from pliant.studies.polishing.cases import CASES, runs_of
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.measure import WORST, measure
+from pliant.studies.polishing.tuning import tuning_of
+from pliant.studies.tuning import Tuning
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -42,6 +44,9 @@ class Polishing(Study[PolishingConfig]):
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         return draw.summary_figures(results, folder)
+
+    def tuning(self, controller: str) -> Tuning:
+        return tuning_of(self.case("tables-2-3-4"), controller)
 
     def report(self, results: Sequence[Result]) -> str:
         return tables.report(results)
