@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from queue import Empty, SimpleQueue
 from types import FrameType
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from pliant import __version__
 from pliant.errors import ConfigError, RunFailedError
@@ -79,8 +79,8 @@ class _DaskPool:
         self._client, self._interrupted = client, interrupted
 
     def __call__(self, function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
-        ended: SimpleQueue[Future] = SimpleQueue()
-        waiting: dict[str, tuple[int, Future]] = {}  # a future that nobody holds is forgotten by the scheduler
+        ended: SimpleQueue[Future[Any]] = SimpleQueue()
+        waiting: dict[object, tuple[int, Future[Any]]] = {}  # a future that nobody holds is forgotten by the scheduler
         for index, task in enumerate(tasks):
             future = self._client.submit(function, task, pure=False)
             waiting[future.key] = index, future
@@ -94,7 +94,7 @@ class _DaskPool:
             if waiting and self._client.status == "running":
                 self._client.cancel([future for _, future in waiting.values()], force=True)
 
-    def _next(self, ended: SimpleQueue[Future]) -> Future:
+    def _next(self, ended: SimpleQueue[Future[Any]]) -> Future[Any]:
         """The next task that ended. Ctrl-C counts once everything that ended was handed out."""
         while True:
             try:
@@ -104,7 +104,7 @@ class _DaskPool:
                     raise KeyboardInterrupt from None
 
 
-def _outcome(future: Future) -> object:
+def _outcome(future: Future[Any]) -> Any:
     """What a task returned. A task whose worker dies is started again by the scheduler, three times."""
     from distributed import KilledWorker
 
@@ -125,7 +125,7 @@ def _local(jobs: int) -> Generator[Client]:
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # inherited by the workers: one thread each
     with _shielded():
         cluster = LocalCluster(
-            n_workers=jobs, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+            n_workers=jobs, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
         )
     with cluster, Client(cluster) as client:
         yield client
@@ -136,11 +136,11 @@ def _connected(scheduler: str) -> Generator[Client]:
     from distributed import Client
 
     try:
-        host, port = _address(scheduler)
-        socket.create_connection((host, port), timeout=_KNOCK).close()
+        _knock(*_address(scheduler))
         client = Client(scheduler, timeout=_ANSWER, set_as_default=False)
-    except (OSError, TimeoutError) as error:
-        raise ConfigError(f"no dask scheduler answers at {scheduler}: {error}; start one with `dask scheduler`") from None
+    except OSError as error:
+        why = str(error) or type(error).__name__
+        raise ConfigError(f"no dask scheduler answers at {scheduler} ({why}); `dask scheduler` starts one") from None
     with client:
         _check_versions(client, scheduler)
         yield client
@@ -149,14 +149,22 @@ def _connected(scheduler: str) -> Generator[Client]:
 def _address(scheduler: str) -> tuple[str, int]:
     scheme, _, rest = scheduler.partition("://")
     host, _, port = rest.rpartition(":")
-    if scheme not in ("tcp", "tls") or not host or not port.isdecimal():
+    if scheme != "tcp" or not host or not port.isdecimal():
         raise ConfigError(f"a scheduler's address is written tcp://HOST:PORT, got {scheduler!r}")
     return host.strip("[]"), int(port)
 
 
+def _knock(host: str, port: int) -> None:
+    """Raises OSError if nothing is there, or if it does not speak first, as dask does: its client would wait long."""
+    with socket.create_connection((host, port), timeout=_KNOCK) as line:
+        line.settimeout(_KNOCK)
+        if not line.recv(1):
+            raise ConnectionError("what listens there is something else")
+
+
 def _check_versions(client: Client, scheduler: str) -> None:
     try:
-        found = client.run(_version)
+        found: dict[str, str] = client.run(_version)  # pyright: ignore[reportAssignmentType] (not a coroutine here)
     except Exception as error:  # whatever a foreign worker makes of it
         raise ConfigError(
             f"the workers of {scheduler} cannot import pliant {__version__}: {type(error).__name__}: {error}"
