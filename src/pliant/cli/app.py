@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, ParamSpec
 
@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from pliant import __version__
-from pliant.errors import PliantError, RunFailedError
+from pliant.errors import ConfigError, PliantError, RunFailedError
 
 app = typer.Typer(
     name="pliant",
@@ -40,8 +40,8 @@ def _guarded(command: Callable[P, None]) -> Callable[P, None]:
         except PliantError as error:
             _complain("error", str(error))
             raise typer.Exit(2) from None
-        except KeyboardInterrupt:
-            _complain("interrupted", "what was recorded until now is kept")
+        except KeyboardInterrupt as error:
+            _complain("interrupted", str(error) or "what was recorded until now is kept")
             raise typer.Exit(130) from None
 
     return guarded
@@ -92,22 +92,59 @@ def run(
 @app.command()
 @_guarded
 def study(
-    name: Annotated[str, typer.Argument(help="Study; see `pliant list studies`.")] = "stack",
+    name: Annotated[
+        str | None, typer.Argument(metavar="[STUDY]", help="Study; see `pliant list studies`.", show_default="stack")
+    ] = None,
     case: Annotated[list[str] | None, typer.Option(help="Only this case; repeatable.")] = None,
     seeds: Annotated[
         int | None, typer.Option(min=1, help="Seeds per case with random draws (default: the study's own).")
     ] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="tcp://HOST:PORT", help="Runs on the workers of a running dask scheduler.")
+    ] = None,
+    resume: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Goes on with an interrupted study: runs what DIR lacks.")
+    ] = None,
     logs: Annotated[
         bool, typer.Option("--logs", help="Keep the log of every run, not only of those that are drawn.")
     ] = False,
+    tune: Annotated[
+        str | None,
+        typer.Option(metavar="CONTROLLER", help="Searches for this controller's best parameters instead."),
+    ] = None,
+    trials: Annotated[
+        int | None, typer.Option(min=1, help="Parameter sets that --tune tries.", show_default="64")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of --tune's search.", show_default="0")] = None,
     out: Out = None,
     set_: Sets = None,
 ) -> None:
     """Runs a whole study, control arms included: the tables and figures of a paper, beside the paper's numbers."""
-    from pliant.cli.study import study_command
+    from pliant.cli.study import resume_command, study_command
+    from pliant.studies.results import Request
 
-    study_command(_out, _err, name, case or [], seeds, jobs, logs, set_ or [], out)
+    rest = {"--case": case, "--seeds": seeds, "--logs": logs}
+    if tune is not None:
+        from pliant.cli.tune import tune_command
+
+        _refuse("--tune", rest | {"--resume": resume})
+        tune_command(_out, _err, name or "stack", tune, trials or 64, seed or 0, set_ or [], out, jobs, scheduler)
+        return
+    if trials is not None or seed is not None:
+        raise ConfigError("--trials and --seed belong to --tune CONTROLLER, which is missing")
+    if resume is not None:
+        _refuse("--resume", rest | {"--set": set_, "--out": out})
+        resume_command(_out, _err, resume, name, jobs, scheduler)
+        return
+    request = Request(name or "stack", tuple(case or ()), seeds, tuple(set_ or ()), logs)
+    study_command(_out, _err, request, out, jobs, scheduler)
+
+
+def _refuse(option: str, others: Mapping[str, object]) -> None:
+    given = [name for name, value in others.items() if value]
+    if given:
+        raise ConfigError(f"{option} cannot be combined with {', '.join(given)}")
 
 
 @app.command()

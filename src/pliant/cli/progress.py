@@ -19,9 +19,29 @@ def progress_bar(console: Console, title: str) -> Generator[Callable[[float], No
 
 
 @contextmanager
-def count_bar(console: Console, title: str, total: int) -> Generator[Callable[[], None], None, None]:
-    """A bar for many runs; the function that it yields is called after each."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+def count_bar(console: Console, title: str, total: int, done: int = 0) -> Generator[Callable[[bool], None], None, None]:
+    """A bar for many runs; the function that it yields is called after each, with whether it failed.
+
+    Args:
+        console: where it is drawn.
+        title: before it.
+        total: how many there are.
+        done: how many were done before.
+    """
+    failed = 0
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[failed]}", style="red"),
+    )
     with Progress(*columns, console=console, transient=True) as progress:
-        task = progress.add_task(title, total=total)
-        yield lambda: progress.advance(task)
+        task = progress.add_task(title, total=total, completed=done, failed="")
+
+        def step(this_failed: bool) -> None:
+            nonlocal failed
+            failed += this_failed
+            progress.update(task, advance=1, failed=f"{failed} failed" if failed else "")
+
+        yield step

@@ -10,25 +10,18 @@ from rich.console import Console
 
 from pliant.cli.progress import count_bar
 from pliant.cli.report import print_results, save_summary, summarised
-from pliant.errors import RunFailedError
+from pliant.errors import ConfigError, RunFailedError
 from pliant.studies.base import CaseConfig, Result, Study
-from pliant.studies.config import merged, parse_assignments
+from pliant.studies.pool import open_pool
 from pliant.studies.registry import get_study
-from pliant.studies.sweep import sweep
+from pliant.studies.results import Request, ResultStore, Run, key, read_results, unsettled
+from pliant.studies.sweep import asked_runs, check_buildable, sweep
 from pliant.telemetry.markdown import summary_markdown
 from pliant.telemetry.output import output_folder, write_text
 
 
 def study_command(
-    console: Console,
-    complain: Console,
-    name: str,
-    cases: Sequence[str],
-    seeds: int | None,
-    jobs: int,
-    logs: bool,
-    assignments: Sequence[str],
-    out: Path | None,
+    console: Console, complain: Console, request: Request, out: Path | None, jobs: int, scheduler: str | None
 ) -> None:
     """Runs a study, or some of its cases.
 
@@ -38,35 +31,90 @@ def study_command(
         PliantError: bad input; nothing was run.
         RunFailedError: every run failed.
     """
-    study = get_study(name)
-    changes = parse_assignments(assignments)
-    runs = [merged(config, changes) for case in cases or study.cases for config in study.runs(case, seeds)]
-    folder = output_folder(out or Path("pliant-out") / name)
-    results: list[Result] = []
+    asked = asked_runs(request)
+    _run(console, complain, request, asked, [], out or Path("pliant-out") / request.study, jobs, scheduler)
+
+
+def resume_command(
+    console: Console, complain: Console, folder: Path, study: str | None, jobs: int, scheduler: str | None
+) -> None:
+    """Goes on with a study that was interrupted: runs what its `results.parquet` lacks, and reports over all.
+
+    Raises:
+        PliantError: bad input; nothing was run.
+        RunFailedError: every run failed.
+    """
+    if not folder.is_dir():
+        raise ConfigError(f"--resume needs the folder of a study that was begun, got {folder}, which is not a folder")
+    request, runs = read_results(folder)
+    if study not in (None, request.study):
+        raise ConfigError(f"{folder} holds results of study {request.study!r}, not of {study!r}")
+    asked = asked_runs(request)
+    known = {key(config) for config in asked}
+    if any(key(run.result.config) not in known for run in runs):
+        raise ConfigError(f"{folder} holds runs that study {request.study!r} no longer has; start it again in another")
+    _run(console, complain, request, asked, [run for run in runs if run.settled], folder, jobs, scheduler)
+
+
+def _run(
+    console: Console,
+    complain: Console,
+    request: Request,
+    asked: Sequence[CaseConfig],
+    before: Sequence[Run],
+    out: Path,
+    jobs: int,
+    scheduler: str | None,
+) -> None:
+    study, rest = get_study(request.study), unsettled(asked, before)
+    if rest:
+        check_buildable(request.study, rest[0])
+    folder = output_folder(out)
+    store = ResultStore(folder, request, asked)
+    store.add_before(before)
     try:
-        with count_bar(complain, f"study {name}", len(runs)) as done:
-            for result in sweep(name, runs, folder, jobs=jobs, logs=logs):
-                results.append(result)
-                done()
+        _sweep(complain, store, request, rest, folder, min(jobs, max(len(rest), 1)), scheduler)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_how_to_resume(store, len(asked), folder)) from None
     finally:
-        if results:
-            _finish(console, study, _in_order(results, runs), folder)
+        if store.runs:
+            _finish(console, study, [run.result for run in store.runs], folder, store.path)
+    results = [run.result for run in store.runs]
     if all(result.failure is not None for result in results):
         raise RunFailedError(f"all {len(results)} runs failed; the first: {results[0].failure}")
 
 
-def _finish(console: Console, study: Study[Any], results: Sequence[Result], folder: Path) -> None:
+def _sweep(
+    complain: Console,
+    store: ResultStore,
+    request: Request,
+    rest: Sequence[CaseConfig],
+    folder: Path,
+    jobs: int,
+    scheduler: str | None,
+) -> None:
+    done = len(store.runs)
+    with (
+        open_pool(jobs, scheduler) as pool,
+        store,
+        count_bar(complain, f"study {request.study}", done + len(rest), done) as step,
+    ):
+        for run in sweep(request.study, rest, folder, pool=pool, logs=request.logs):
+            store.add(run)
+            step(run.result.failure is not None)
+
+
+def _how_to_resume(store: ResultStore, total: int, folder: Path) -> str:
+    return f"{len(store.runs)} of {total} runs are kept; go on with: pliant study --resume {folder}"
+
+
+def _finish(console: Console, study: Study[Any], results: Sequence[Result], folder: Path, table: Path) -> None:
     summary = save_summary(study, results, folder)
     report = folder / "report.md"
     parts = (f"# {study.title}\n", study.report(results), summary_markdown(summarised(study, results)))
     write_text(report, "\n".join(part for part in parts if part))
     print_results(console, study, results)
     figures = study.summary_figures(results, folder)
-    for kind, path in [("summary", summary), ("report", report), *(("figure", figure) for figure in figures)]:
+    files = [("summary", summary), ("report", report), ("results", table)]
+    for kind, path in [*files, *(("figure", figure) for figure in figures)]:
         console.print(f"{kind:8s} {path}", markup=False, highlight=False, soft_wrap=True)
-
-
-def _in_order(results: Sequence[Result], runs: Sequence[CaseConfig]) -> list[Result]:
-    """The results in the order in which the runs were asked for, whichever ended first."""
-    place = {config.model_dump_json(): index for index, config in enumerate(runs)}
-    return sorted(results, key=lambda result: place[result.config.model_dump_json()])

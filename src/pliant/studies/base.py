@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import Field
 
@@ -17,6 +17,9 @@ from pliant.studies.config import Config
 from pliant.telemetry.log import Log
 from pliant.telemetry.schema import Channel
 from pliant.telemetry.summary import Metric
+
+if TYPE_CHECKING:
+    from pliant.studies.tuning import Tuning
 
 
 class CaseConfig(Config):
@@ -118,3 +121,7 @@ class Study(ABC, Generic[C]):
     def report(self, results: Sequence[Result]) -> str:
         """Tables as the paper prints them, in Markdown, for the study's report; empty where there are none."""
         return ""
+
+    def tuning(self, controller: str) -> Tuning:
+        """How the parameters of a controller are searched. Raises ConfigError if the study does not say."""
+        raise ConfigError(f"study {self.name!r} cannot be tuned; a study can if it overrides `Study.tuning`")

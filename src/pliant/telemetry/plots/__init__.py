@@ -10,6 +10,7 @@ from pliant.telemetry.plots.path import Path2D, task_path
 from pliant.telemetry.plots.portrait import attractor, phase_portrait
 from pliant.telemetry.plots.series import Curve, Panel, time_series
 from pliant.telemetry.plots.style import save
+from pliant.telemetry.plots.trials import trials
 
 __all__ = [
     "Curve",
@@ -26,4 +27,5 @@ __all__ = [
     "sweep",
     "task_path",
     "time_series",
+    "trials",
 ]

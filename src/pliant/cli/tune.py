@@ -1,0 +1,147 @@
+"""`pliant study NAME --tune CONTROLLER`: searches the controller's parameters, and writes the best as TOML."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from pliant import __version__
+from pliant.cli.progress import count_bar
+from pliant.studies.config import merged, parse_assignments
+from pliant.studies.parquet import write_parquet
+from pliant.studies.pool import open_pool
+from pliant.studies.registry import get_study
+from pliant.studies.search import Trial, require_optuna, search
+from pliant.studies.sweep import check_buildable
+from pliant.studies.tuning import PENALTY, Tuning, find_tuning
+from pliant.telemetry.output import output_folder, write_text
+from pliant.telemetry.table import number
+
+
+def tune_command(
+    console: Console,
+    complain: Console,
+    name: str,
+    controller: str,
+    trials: int,
+    seed: int,
+    assignments: Sequence[str],
+    out: Path | None,
+    jobs: int,
+    scheduler: str | None,
+) -> None:
+    """Searches; Ctrl-C keeps the best until then.
+
+    Raises:
+        PliantError: bad input; nothing was run.
+    """
+    require_optuna()
+    tuning = find_tuning(get_study(name), controller)
+    changes = parse_assignments(assignments)
+    tuning = replace(tuning, runs=[merged(config, changes) for config in tuning.runs])
+    check_buildable(name, merged(tuning.runs[0], tuning.changes(tuning.start)))
+    folder = output_folder(out or Path("pliant-out") / f"{name}-tune-{controller}")
+    made: list[Trial] = []
+    try:
+        with open_pool(jobs, scheduler) as pool, count_bar(complain, f"tune {name} {controller}", trials) as step:
+            for trial in search(name, tuning, trials, seed=seed, pool=pool):
+                made.append(trial)
+                step(trial.failed > 0)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"the best of {len(made)} of {trials} trials is kept in {folder}") from None
+    finally:
+        if made:
+            about = {"study": name, "controller": controller, "seed": seed, "assignments": list(assignments)}
+            _finish(console, tuning, made, about, folder)
+
+
+def _finish(console: Console, tuning: Tuning, made: Sequence[Trial], about: Mapping[str, Any], folder: Path) -> None:
+    table = folder / "trials.parquet"
+    _write_trials(table, tuning, made, about)
+    best = min(made, key=lambda trial: trial.objective)  # the earliest of equals: the start, if nothing is better
+    toml = folder / "tuned.toml"
+    write_text(toml, _toml(tuning, made, best, about))
+    figure = _draw(tuning, made, about, folder / "trials.png")
+    console.print(_start_and_best(tuning, made, best, about))
+    for kind, path in (("tuned", toml), ("trials", table), ("figure", figure)):
+        console.print(f"{kind:8s} {path}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _write_trials(path: Path, tuning: Tuning, made: Sequence[Trial], about: Mapping[str, Any]) -> None:
+    import pyarrow as pa
+
+    columns: dict[str, Any] = {
+        "trial": pa.array([trial.number for trial in made], pa.int64()),
+        "objective": pa.array([trial.objective for trial in made], pa.float64()),
+        "failed": pa.array([trial.failed for trial in made], pa.int64()),
+        "failure": pa.array([trial.failure for trial in made], pa.string()),
+    }
+    columns |= {name: pa.array([trial.values[name] for trial in made], pa.float64()) for name in tuning.parameters}
+    write_parquet(path, pa.table(columns), about)
+
+
+def _start_and_best(tuning: Tuning, made: Sequence[Trial], best: Trial, about: Mapping[str, Any]) -> Table:
+    title = f"{about['study']} · {about['controller']} · pliant {__version__} · best of {len(made)} trials"
+    table = Table(title=title, title_justify="left", title_style="bold", header_style="bold")
+    table.add_column("parameter", overflow="fold")
+    for heading in ("start", "best", "searched"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for name, range_ in tuning.parameters.items():
+        searched = f"{number(range_.low)} … {number(range_.high)}"
+        table.add_row(name, number(tuning.start[name]), number(best.values[name]), searched)
+    table.add_section()
+    table.add_row("objective", _objective(made[0]), _objective(best), "")
+    return table
+
+
+def _objective(trial: Trial) -> str:
+    return f"{trial.failed} failed" if trial.failed else number(trial.objective)
+
+
+def _draw(tuning: Tuning, made: Sequence[Trial], about: Mapping[str, Any], path: Path) -> Path:
+    from pliant.telemetry.plots import save
+    from pliant.telemetry.plots import trials as draw
+
+    judged = np.array([np.nan if trial.objective >= PENALTY or trial.failed else trial.objective for trial in made])
+    values = {name: np.array([trial.values[name] for trial in made]) for name in tuning.parameters}
+    log = [name for name, range_ in tuning.parameters.items() if range_.log]
+    return save(draw(judged, values, log, f"Search · {about['study']} · {about['controller']}"), path)
+
+
+def _toml(tuning: Tuning, made: Sequence[Trial], best: Trial, about: Mapping[str, Any]) -> str:
+    lines = [
+        f"# pliant {__version__}: best of {len(made)} trials, seed {about['seed']};"
+        f" objective {_objective(best)}, at the start {_objective(made[0])}",
+        f"study = {json.dumps(about['study'])}",
+        f"controller = {json.dumps(about['controller'])}",
+        *_assignments(tuning.changes(best.values)),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _assignments(tree: Mapping[str, Any], above: str = "") -> list[str]:
+    """Dotted keys: TOML has them, and they read like `--set`."""
+    lines: list[str] = []
+    for name, value in tree.items():
+        key = above + (name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name))
+        if isinstance(value, Mapping):
+            lines += _assignments(value, f"{key}.")
+        elif value is not None:  # TOML has no null
+            lines.append(f"{key} = {_value(value)}")
+    return lines
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_value(entry) for entry in value) + "]"
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    return json.dumps(value.item() if isinstance(value, np.generic) else value, ensure_ascii=False)
