@@ -134,6 +134,11 @@ def frame_with_z_along(direction: npt.ArrayLike) -> Array:
     return exp3(axis / sine * math.atan2(sine, float(z[2])))
 
 
+def cross(a: Array, b: Array) -> Array:
+    """a × b of two vectors (3,); NumPy's own, which takes any shapes, is ten times slower."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
 def all_finite(*arrays: Any) -> bool:
     """Whether every entry of every array is finite."""
     return all(np.isfinite(array).all() for array in arrays)

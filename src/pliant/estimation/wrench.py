@@ -12,7 +12,7 @@ from pliant.errors import ConfigError
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
-from pliant.spatial import Array
+from pliant.spatial import Array, cross
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class WrenchEstimator(Estimator[WrenchState]):
             return wrench
         weight: Array = carried.mass * np.array(self._model.gravity.linear)
         lever: Array = R_world_sensor @ np.array(carried.center)
-        return wrench - np.concatenate([weight, np.cross(lever, weight)])
+        return wrench - np.concatenate([weight, cross(lever, weight)])
 
     def _above(self, frame: str, wrench: Array, time: float, state: WrenchState) -> float:
         last = state.above.get(frame, -np.inf)

@@ -1,10 +1,19 @@
 """Predictive control in contact: classical, torque feedback and force feedback, for any serial robot.
 
-A configuration (`MpcConfig`, or one of the three with their defaults) is bound to a robot by `MpcController`, which
+A configuration (`MpcConfig`, or one of those with defaults) is bound to a robot by `MpcController`, which
 solves the problem with the compiled core at every period.
 """
 
-from pliant.mpc.config import Bounds, ClassicalMpc, Contact, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.config import (
+    Bounds,
+    ClassicalMpc,
+    Compensation,
+    Contact,
+    ForceFeedbackMpc,
+    MpcConfig,
+    OffsetFreeMpc,
+    TorqueFeedbackMpc,
+)
 from pliant.mpc.controller import MpcController, MpcState
 from pliant.mpc.costs import Costs, Phase, Term
 from pliant.mpc.problem import MpcProblem, problem_from_model, problem_from_robot
@@ -14,6 +23,7 @@ __all__ = [
     "CONTROLLERS",
     "Bounds",
     "ClassicalMpc",
+    "Compensation",
     "Contact",
     "Costs",
     "ForceFeedbackMpc",
@@ -21,6 +31,7 @@ __all__ = [
     "MpcController",
     "MpcProblem",
     "MpcState",
+    "OffsetFreeMpc",
     "Phase",
     "Term",
     "TorqueFeedbackMpc",

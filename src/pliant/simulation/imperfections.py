@@ -33,8 +33,10 @@ class Imperfections(Config):
     def p3(cls, *, pid: bool = True, computation_delay: float = 5e-3) -> Imperfections:
         """The imperfect seven-joint arm of [FFMPC] sec. VI-B, its last joint locked.
 
-        The torque noise is the six values of the published code. That code also leaves out the sensing delay, drops
-        the computation delay and fixes the bias at +2 N·m; here the paper's text stands.
+        Eq. 31 counts the torque sensor's delay of one cycle from the motor torque: what acted in the cycle that ends
+        now, a reading without a delay here. The torque noise is the six values of the published code. That code also
+        leaves out the sensing delay, drops the computation delay and fixes the bias at +2 N·m; here the paper's text
+        stands.
 
         Args:
             pid: with the drives' torque loop, or with feed-forward alone.
@@ -49,6 +51,7 @@ class Imperfections(Config):
             ),
             sensing=SensingConfig(
                 delay=1e-3,
+                delay_torque=0.0,
                 noise_q=1e-3,
                 noise_v=1e-3,
                 noise_torque=(0.03, 0.03, 0.02, 0.02, 0.01, 0.01),

@@ -22,7 +22,7 @@ from pliant.simulation.force_sensor import ForceSensor
 from pliant.simulation.joint_effects import JointEffects
 from pliant.simulation.link_capsule import LinkCapsule
 from pliant.simulation.scene import Plane, Scene
-from pliant.spatial import Array
+from pliant.spatial import Array, cross
 
 
 @dataclass(slots=True)
@@ -284,7 +284,7 @@ class MujocoPlant(Plant[World]):
                 mujoco.mj_contactForce(self.model, data, index, local)
                 force = sign * (contact.frame.reshape(3, 3).T @ local[:3])
                 lever = contact.pos - data.site_xpos[self._sites[frame]]
-                world.wrenches[frame] += np.concatenate([force, np.cross(lever, force)])
+                world.wrenches[frame] += np.concatenate([force, cross(lever, force)])
                 touching.add(frame)
         world.touching = frozenset(touching)
 
@@ -309,7 +309,7 @@ class MujocoPlant(Plant[World]):
             for frame in self._felt[sensor]:
                 wrench, lever = world.wrenches[frame], data.site_xpos[self._sites[frame]] - data.site_xpos[site]
                 force += wrench[:3]
-                moment += wrench[3:] + np.cross(lever, wrench[:3])
+                moment += wrench[3:] + cross(lever, wrench[:3])
             reading = np.concatenate([R_world_sensor.T @ force, R_world_sensor.T @ moment])
             if sensor.mass > 0.0:
                 reading += self._carried(sensor, site, data)
@@ -324,9 +324,9 @@ class MujocoPlant(Plant[World]):
         spin = np.zeros(6)
         mujoco.mj_objectVelocity(self.model, data, mujoco.mjtObj.mjOBJ_SITE, site, spin, 1)
         center = np.array(sensor.center)
-        acceleration = motion[3:] + np.cross(motion[:3], center) + np.cross(spin[:3], np.cross(spin[:3], center))
+        acceleration = motion[3:] + cross(motion[:3], center) + cross(spin[:3], cross(spin[:3], center))
         force = -sensor.mass * acceleration
-        return np.concatenate([force, np.cross(center, force)])
+        return np.concatenate([force, cross(center, force)])
 
 
 def _touch(frame: str) -> str:

@@ -19,6 +19,9 @@ class SensingConfig(Config):
     """Delay and noise. Standard deviations are those of white Gaussian noise on every reading; 0 switches one off."""
 
     delay: float = quantity(0.0, "s", "age of every reading", ge=0.0, le=1.0)
+    delay_torque: float | None = quantity(
+        None, "s", "age of the joint torque sensors' readings; none: as the others", ge=0.0, le=1.0
+    )
     delay_force: float = quantity(0.0, "s", "further age of the force/torque sensors' readings", ge=0.0, le=1.0)
     noise_q: PerJoint = quantity(0.0, "rad", "standard deviation of the joint positions")
     noise_v: PerJoint = quantity(0.0, "rad/s", "standard deviation of the joint velocities")
@@ -36,6 +39,8 @@ class SensingState:
     """Readings under way, the generators, and what was drawn once. Consumed by `step`."""
 
     queue: tuple[Measurement, ...]
+    torques: tuple[Array, ...]
+    """(n,) under way from the joint torque sensors, N·m"""
     wrenches: tuple[Mapping[str, Array], ...]
     """frame → (6,) under way from the force/torque sensors"""
     generators: dict[str, np.random.Generator]
@@ -65,6 +70,8 @@ class Sensing:
     def __init__(self, config: SensingConfig, period: float, n: int) -> None:
         self.config = config
         self._delay: Delay[Measurement] = Delay(whole_periods(config.delay, period, "sensing delay"))
+        torque_delay = config.delay if config.delay_torque is None else config.delay_torque
+        self._delay_torque: Delay[Array] = Delay(whole_periods(torque_delay, period, "delay of the torque sensors"))
         late = whole_periods(config.delay_force, period, "delay of the force signal")
         self._delay_force: Delay[Mapping[str, Array]] = Delay(late)
         self._noise_q = as_vector(config.noise_q, n, "noise_q")
@@ -79,6 +86,7 @@ class Sensing:
         mismatch = generator(seed, "sensing.mismatch")
         return SensingState(
             queue=self._delay.init(true),
+            torques=self._delay_torque.init(true.torque),
             wrenches=self._delay_force.init(true.wrenches),
             generators={source: generator(seed, f"sensing.{source}") for source in sources},
             torque_gain=1.0 + self.config.torque_gain_error * mismatch.uniform(-1.0, 1.0, self._n),
@@ -97,6 +105,7 @@ class Sensing:
             until now: the controller knows that without a sensor.
         """
         old, state.queue = self._delay.step(true, state.queue)
+        torque, state.torques = self._delay_torque.step(true.torque, state.torques)
         felt, state.wrenches = self._delay_force.step(old.wrenches, state.wrenches)
         draw = state.generators
         reading = replace(
@@ -105,7 +114,7 @@ class Sensing:
             torque_sent=true.torque_sent,
             q=old.q + self._noise_q * draw["q"].standard_normal(self._n),
             v=old.v + self._noise_v * draw["v"].standard_normal(self._n),
-            torque=state.torque_gain * old.torque
+            torque=state.torque_gain * torque
             + state.torque_offset
             + self._noise_torque * draw["torque"].standard_normal(self._n),
             wrenches=self._noisy(felt, draw),

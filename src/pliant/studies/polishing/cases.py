@@ -40,7 +40,7 @@ CASES: Mapping[str, PolishingConfig] = MappingProxyType(
     {
         config.case: config
         for config in (
-            _case("ideal"),
+            _case("ideal", preset="perfect"),
             _case("tables-2-3-4", **_imperfect()),
             _case("tables-2-3-4-delayed", controller=BEST, **_imperfect(delay=_DELAY)),
             _case("square", task={"pattern": "square"}, **_imperfect()),

@@ -15,7 +15,7 @@ from pliant.mpc import CONTROLLERS, MpcConfig
 from pliant.simulation import Imperfections
 from pliant.studies.base import CaseConfig
 from pliant.studies.config import Config, merged
-from pliant.studies.polishing.tuned import TUNED
+from pliant.studies.polishing.tuned import PRESETS
 
 FRAME = "tool"
 BALL_RADIUS = 0.015  # m; the contact frame is its centre
@@ -141,9 +141,10 @@ class PolishingConfig(CaseConfig):
     )
     pushes: Pushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
     estimation: Estimation = Estimation()
-    preset: Literal["tuned", "paper"] = Field(
+    preset: Literal["tuned", "perfect", "paper"] = Field(
         default="tuned",
-        description="what `control` starts from: tuned for this plant, or the weights of the paper's authors",
+        description="what `control` starts from: weights tuned for the imperfect robot, for a perfect one, or the"
+        " weights of the paper's authors",
     )
     control: dict[str, Any] = Field(
         default={}, description="changes to the controller's parameters, e.g. control.contact.stiffness=[1e4]"
@@ -162,7 +163,7 @@ class PolishingConfig(CaseConfig):
     def parameters(self) -> MpcConfig:
         """The controller's parameters: its defaults, those of this study, what is known of the robot's delays, then
         `control`."""
-        changes = TUNED.get(self.controller, {}) if self.preset == "tuned" else {}
+        changes = PRESETS[self.preset].get(self.controller, {})
         config: MpcConfig = merged(merged(self.entry.default, changes), self.control)
         chosen = self.control.get("compensation", {})
         if not config.compensation.delay or "sensing_delay" in chosen or "computation_delay" in chosen:

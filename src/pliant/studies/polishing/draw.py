@@ -1,23 +1,35 @@
-"""Figures of the polishing study."""
+"""Figures of one run of the polishing study: signals over time, and the scene ([FFMPC] Fig. 5)."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
-from pliant.studies.base import Experiment, Result
+import numpy as np
+from matplotlib.figure import Figure
+
+from pliant.simulation import ImperfectPlant, MujocoPlant
+from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
+from pliant.spatial import Array
+from pliant.studies.base import Experiment
 from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.studies.runner import file_stem
 from pliant.telemetry.log import Log
-from pliant.telemetry.plots.series import Curve, Panel, time_series
-from pliant.telemetry.plots.style import save
+from pliant.telemetry.plots import Curve, Panel, save, style, time_series
 
-DRAWN = ("ideal", "tables-2-3-4", "tables-2-3-4-delayed", "square", "slow", "slow-tilted", "fast-tilted", "fast-pushed")
-"""cases of which the first run of each row is drawn"""
+_METRES_PER_NEWTON = 0.003
+_CAMERA = Camera(look_at=(0.50, 0.0, 0.24), distance=1.45, azimuth=128.0, elevation=-16.0)
+_REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (0.76, 0.18, 0.18, 1.0)
 
 
 def run_figures(config: PolishingConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
-    """Force, position error and solver over time."""
+    """Force, position error, disturbance and solver over time; the arm at four moments."""
+    stem = file_stem(config)
+    files = [save(_history(config, log), folder / f"{stem}_history.png")]
+    scene = _moments(config, experiment, log)
+    return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+
+
+def _history(config: PolishingConfig, log: Log) -> Figure:
     time = log.time(f"truth/{FRAME}/wrench")
     force, wanted = log[f"truth/{FRAME}/wrench"][:, 2], log[f"reference/{FRAME}/wrench"][:, 2]
     error = 1e3 * (log[f"truth/{FRAME}/position"] - log[f"reference/{FRAME}/position"])
@@ -26,10 +38,41 @@ def run_figures(config: PolishingConfig, experiment: Experiment, log: Log, folde
         Panel("position error, mm", [Curve("xy"[axis], time, error[:, axis]) for axis in range(2)]),
         Panel("SQP iterations", [Curve("", log.time("mpc/iterations"), log["mpc/iterations"])]),
     ]
-    made = time_series(panels, title=f"{config.case}, {config.controller}", phases=log.phases())
-    return [save(made, folder / f"{file_stem(config)}.png")]
+    disturbance = log["mpc/disturbance"]
+    if np.any(disturbance):
+        curves = [Curve(f"joint {joint + 1}", time, values) for joint, values in enumerate(disturbance.T)]
+        panels.insert(2, Panel("disturbance, N·m", curves))
+    title = " · ".join(part for part in (config.case, config.controller, config.variant) if part)
+    return time_series(panels, title=title, phases=log.phases())
 
 
-def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
-    """What only several runs together show."""
-    return []
+def _moments(config: PolishingConfig, experiment: Experiment, log: Log) -> Figure | None:
+    """Reach, first contact, ramp, circle: the arm with what the tool has drawn so far and the force it feels."""
+    plant = experiment.plant.inner if isinstance(experiment.plant, ImperfectPlant) else experiment.plant
+    if not isinstance(plant, MujocoPlant):
+        return None
+    time, q = log.time("truth/q"), log["truth/q"]
+    task = config.task
+    instants = [0.5 * task.reach, task.touch + 0.05, task.circle, 0.5 * (task.circle + config.duration)]
+    instants = [instant for instant in instants if instant <= time[-1]]
+    moments = np.searchsorted(time, instants)
+    pictures = render(
+        plant.model, [_snapshot(log, q, int(moment)) for moment in moments], _CAMERA, width=520, height=420
+    )
+    if pictures is None:
+        return None
+    made = style.figure(2.6 * len(instants), 2.5, f"{config.case}, {config.controller}")
+    for ax, picture, moment in zip(made.subplots(1, len(instants), squeeze=False)[0], pictures, moments, strict=True):
+        force = float(log[f"truth/{FRAME}/wrench"][moment, 2])
+        ax.imshow(picture.astype(np.uint8))
+        ax.set_axis_off()
+        ax.set_title(f"t = {time[moment]:.2f} s, {force:.0f} N", fontsize=style.NORMAL, color=style.INK)
+    return made
+
+
+def _snapshot(log: Log, q: Array, moment: int) -> Snapshot:
+    position = log[f"truth/{FRAME}/position"]
+    drawn, wanted = position[: moment + 1 : 10], log[f"reference/{FRAME}/position"][: moment + 1 : 10]
+    arrow = Arrow(position[moment], _METRES_PER_NEWTON * log[f"truth/{FRAME}/wrench"][moment, :3], _FORCE)
+    paths = (Path3(wanted, _REFERENCE, 0.003), Path3(drawn, _TRACE, 0.003)) if len(drawn) > 1 else ()
+    return Snapshot(q[moment], paths, arrows=(arrow,))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pliant.mpc import CONTROLLERS
 from pliant.studies.base import Experiment, Result, Study
-from pliant.studies.polishing import draw, tables
+from pliant.studies.polishing import draw, overview, tables
 from pliant.studies.polishing.build import build
 from pliant.studies.polishing.cases import CASES, runs_of
 from pliant.studies.polishing.config import PolishingConfig
@@ -31,7 +31,7 @@ class Polishing(Study[PolishingConfig]):
         return runs_of(self.case(case), seeds)
 
     def shows(self, config: PolishingConfig) -> bool:
-        return config.seed == 0 and config.case in draw.DRAWN and config.variant in ("", "PID", "no PID")
+        return config.seed == 0 and config.variant in ("", "PID", "no PID")
 
     def build(self, config: PolishingConfig) -> Experiment:
         return build(config)
@@ -43,7 +43,7 @@ class Polishing(Study[PolishingConfig]):
         return draw.run_figures(config, experiment, log, folder)
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
-        return draw.summary_figures(results, folder)
+        return overview.summary_figures(results, folder)
 
     def tuning(self, controller: str) -> Tuning:
         return tuning_of(self.case("tables-2-3-4"), controller)

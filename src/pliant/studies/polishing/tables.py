@@ -69,7 +69,7 @@ def _averaged(runs: Sequence[Result]) -> tuple[Metric, ...]:
 def _cell(metric: Metric | None) -> str:
     if metric is None:
         return "–"
-    return value_text(metric) + ("" if metric.paper is None else f" ({number(metric.paper, 4)})")
+    return value_text(metric) + ("" if metric.paper is None else f" ({metric.paper:g})")
 
 
 def _difference(without: Mapping[str, Sequence[Result]], within: Mapping[str, Sequence[Result]]) -> str:

@@ -22,7 +22,7 @@ _ROBUST: Mapping[str, Mapping[str, float]] = {
 
 def targets_of(config: PolishingConfig) -> Mapping[str, float]:
     """Metric → upper bound, in the metric's unit."""
-    if config.case == "ideal" and config.controller == "force-feedback-mpc" and config.preset == "tuned":
+    if config.case == "ideal" and config.controller == "force-feedback-mpc" and config.preset == "perfect":
         return {"E_λ": 0.5, "E_P": 1.0, "t_break": 0.0}
     if config.controller == "force-feedback-mpc" and config.case == "tables-2-3-4":
         return {"E_λ": 4.0} if config.imperfections.torque_loop.gain_p else {}

@@ -8,6 +8,7 @@ from pliant.telemetry.plots.log import plot_log
 from pliant.telemetry.plots.parameter import sweep
 from pliant.telemetry.plots.path import Path2D, task_path
 from pliant.telemetry.plots.portrait import attractor, phase_portrait
+from pliant.telemetry.plots.rows import dots
 from pliant.telemetry.plots.series import Curve, Panel, time_series
 from pliant.telemetry.plots.style import save
 from pliant.telemetry.plots.trials import trials
@@ -18,6 +19,7 @@ __all__ = [
     "Path2D",
     "attractor",
     "compare",
+    "dots",
     "energy_ledger",
     "joint_torques",
     "phase_portrait",

@@ -1,0 +1,81 @@
+"""Joint positions from velocities and positions: less noise, no lag, no drift."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pliant.errors import ConfigError, SignalError
+from pliant.estimation import DirectEstimator, FilteredEstimator, FirstOrder, JointStateFilter
+from pliant.interfaces import Estimator
+from pliant.signals import Measurement
+
+PERIOD, N, SIGMA = 1e-3, 3, 1e-3  # s, joints, rad
+
+
+def measured(tick: int, rng: np.random.Generator, velocity_error: float = 0.0, noise: float = SIGMA) -> Measurement:
+    time = tick * PERIOD
+    q, v = np.full(N, np.sin(3.0 * time)), np.full(N, 3.0 * np.cos(3.0 * time))
+    return Measurement(time, q + noise * rng.standard_normal(N), v + velocity_error, np.zeros(N), np.zeros(N))
+
+
+def errors(estimator: Estimator, ticks: int = 6000, **changes: float) -> np.ndarray:
+    """(ticks, n) rad, estimated minus true."""
+    rng = np.random.default_rng(2)
+    state = estimator.init(measured(0, rng, **changes))
+    found = []
+    for tick in range(ticks):
+        estimate, state = estimator.step(measured(tick, rng, **changes), state)
+        found.append(estimate.q - np.sin(3.0 * tick * PERIOD))
+    return np.array(found)
+
+
+def test_noise_shrinks_as_the_docstring_says() -> None:
+    """σ_q √(a/(2 − a)); control arm: no filter."""
+    gain = PERIOD / 0.3
+    settled = errors(JointStateFilter(DirectEstimator(), 0.3))[1500:]
+    assert settled.std() == pytest.approx(SIGMA * np.sqrt(gain / (2.0 - gain)), rel=0.25)
+    assert errors(DirectEstimator())[1500:].std() == pytest.approx(SIGMA, rel=0.05)
+
+
+def test_there_is_no_lag() -> None:
+    """Without noise the moving joint is followed to the error of the trapezium; a low-pass of the same noise lags."""
+    assert np.abs(errors(JointStateFilter(DirectEstimator(), 0.3), noise=0.0)).max() < 1e-6
+    share = 2.0 * (PERIOD / 0.3) / 2.0
+    lagging = np.abs(_low_passed(share)).max()
+    assert lagging > 0.3
+
+
+def _low_passed(share: float) -> np.ndarray:
+    q, out = 0.0, []
+    for tick in range(3000):
+        q += share * (np.sin(3.0 * tick * PERIOD) - q)
+        out.append(q - np.sin(3.0 * tick * PERIOD))
+    return np.array(out)
+
+
+def test_a_velocity_error_shifts_it_by_the_memory() -> None:
+    """A constant error b of v shifts q̂ by b · memory, and no further: nothing drifts."""
+    found = errors(JointStateFilter(DirectEstimator(), 0.1), noise=0.0, velocity_error=0.01)
+    np.testing.assert_allclose(found[-1], 0.01 * 0.1, rtol=0.02)
+
+
+def test_the_first_readings_are_averaged() -> None:
+    found = np.abs(errors(JointStateFilter(DirectEstimator(), 10.0), ticks=200)[-1])
+    assert found.max() < 4.0 * SIGMA / np.sqrt(200)
+
+
+def test_other_signals_pass_and_bad_input_is_named() -> None:
+    rng = np.random.default_rng(0)
+    inner = FilteredEstimator(DirectEstimator(), velocity=FirstOrder(50.0, PERIOD))
+    estimator = JointStateFilter(inner, 0.3)
+    state = estimator.init(measured(0, rng))
+    estimate, after = estimator.step(measured(5, rng), state)
+    np.testing.assert_array_equal(estimate.torque, 0.0)
+    again, _ = estimator.step(measured(5, np.random.default_rng(1)), state)
+    assert again.q.shape == estimate.q.shape
+    with pytest.raises(SignalError, match="in order"):
+        estimator.step(measured(4, rng), after)
+    for memory in (0.0, -1.0, float("nan")):
+        with pytest.raises(ConfigError, match="above zero"):
+            JointStateFilter(inner, memory)

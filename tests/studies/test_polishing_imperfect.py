@@ -1,0 +1,152 @@
+"""The polishing study on the imperfect robot in reduced form: few tilts and seeds, the first second of the circle."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pliant.errors import ConfigError
+from pliant.simulation import Imperfections
+from pliant.studies.base import Result
+from pliant.studies.config import merged
+from pliant.studies.polishing import STUDY
+from pliant.studies.polishing.cases import ALL, CASES, TILTS
+from pliant.studies.polishing.config import PolishingConfig
+from pliant.studies.polishing.paper import STOCK
+from pliant.studies.polishing.tables import report
+from pliant.studies.runner import run_case
+from pliant.telemetry.summary import Metric
+
+DRAWS = ((0.1, 900), (0.1, 901), (-0.1, 902), (-0.1, 903))  # tilt in rad, seed: 2 tilts × 2 seeds
+BEST = "offset-free-mpc"
+
+
+def config_of(controller: str, tilt: float, seed: int, pid: bool, delay: float, **changes: Any) -> PolishingConfig:
+    flaws = Imperfections.p3(pid=pid, computation_delay=delay).model_dump()
+    fixed = {"controller": controller, "seed": seed, "duration": 4.0, "table": {"tilt": tilt}, "imperfections": flaws}
+    return merged(merged(CASES["ablation"], fixed), changes)
+
+
+@cache
+def results(controller: str, pid: bool, delay: float) -> tuple[Result, ...]:
+    return tuple(run_case(STUDY, config_of(controller, tilt, seed, pid, delay)) for tilt, seed in DRAWS)
+
+
+def value(result: Result, name: str) -> float:
+    assert result.failure is None, result.failure
+    return next(metric.value for metric in result.metrics if metric.name == name)
+
+
+def mean(runs: tuple[Result, ...], name: str) -> float:
+    return float(np.mean([value(run, name) for run in runs]))
+
+
+@pytest.mark.study
+@pytest.mark.parametrize("pid", [True, False])
+def test_offset_free_control_holds_its_targets_through_5_ms(pid: bool) -> None:
+    runs = results(BEST, pid, 5e-3)
+    assert mean(runs, "E_λ") <= (0.5 if pid else 0.6)
+    assert mean(runs, "E_P") <= (0.5 if pid else 0.6)
+    assert max(value(run, "λ_max") for run in runs) <= 58.0
+    assert max(value(run, "t_break") for run in runs) == 0.0
+    assert max(value(run, "first contact peak") for run in runs) <= 30.0
+
+
+@pytest.mark.study
+@pytest.mark.parametrize("pid", [True, False])
+def test_without_delay_the_three_come_out_in_the_papers_order(pid: bool) -> None:
+    """Force feedback tracks the force best, and no stock controller comes near the compensated one at 5 ms."""
+    force = {name: mean(results(name, pid, 0.0), "E_λ") for name in STOCK}
+    assert force["force-feedback-mpc"] < 0.6 * min(force["classical-mpc"], force["torque-feedback-mpc"])
+    assert mean(results(BEST, pid, 5e-3), "E_λ") < 0.5 * force["force-feedback-mpc"]
+    if pid:
+        assert force["force-feedback-mpc"] <= 4.0
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("part", "changes"),
+    [
+        ("delay prediction", {"compensation": {"sensing_delay": 0.0, "computation_delay": 0.0}}),
+        ("disturbance", {"compensation": {"disturbance": False}}),
+    ],
+)
+def test_each_part_is_needed(part: str, changes: dict[str, Any]) -> None:
+    """Control arms: without it the same run fails or tracks three times worse."""
+    tilt, seed = DRAWS[0]
+    result = run_case(STUDY, config_of(BEST, tilt, seed, False, 5e-3, control=changes))
+    whole = results(BEST, False, 5e-3)[0]
+    assert result.failure is not None or value(result, "E_P") > 3.0 * value(whole, "E_P"), part
+
+
+@pytest.mark.study
+def test_one_tuning_covers_soft_and_stiff_tables() -> None:
+    for stiffness in (3e3, 1e5):
+        changes = {"table": {"stiffness": stiffness}}
+        assert value(run_case(STUDY, config_of(BEST, 0.1, 900, False, 5e-3, **changes)), "E_λ") <= 1.5
+
+
+@pytest.mark.study
+def test_the_same_seed_gives_the_same_row_and_another_one_another() -> None:
+    first = results(BEST, True, 5e-3)[0]
+    again = run_case(STUDY, config_of(BEST, *DRAWS[0], True, 5e-3))
+    assert first.metrics == again.metrics
+    assert value(first, "E_λ") != value(results(BEST, True, 5e-3)[1], "E_λ")
+
+
+@pytest.mark.study
+def test_a_robot_that_runs_away_is_stopped_and_counted() -> None:
+    """Most stock runs with 5 ms do; the run ends early, is a failed one, and has no metrics that could look good."""
+    result = run_case(STUDY, config_of("force-feedback-mpc", 0.1, 900, False, 5e-3))
+    assert result.failure is not None
+    assert "times its speed limit" in result.failure
+    assert result.metrics == ()
+
+
+def test_the_tables_have_the_runs_that_the_study_promises() -> None:
+    stock = STUDY.runs("tables-2-3-4")
+    assert len(stock) == len(TILTS) * 10 * len(STOCK) * 2 == 420
+    assert all(run.imperfections.computation_delay == 0.0 for run in stock)
+    delayed = STUDY.runs("tables-2-3-4-delayed")
+    assert len([run for run in delayed if run.controller == BEST]) == 140
+    assert all(run.imperfections.computation_delay == 5e-3 for run in delayed)
+    for case in CASES:
+        runs = STUDY.runs(case, 2)
+        assert len({run.model_dump_json() for run in runs}) == len(runs), case
+        for run in runs:
+            run.parameters()  # every row's configuration is possible
+
+
+def test_what_is_tuned_on_is_not_in_the_tables() -> None:
+    seen = {run.seed for case in CASES for run in STUDY.runs(case)}
+    for controller in ALL:
+        tuning = STUDY.tuning(controller)
+        assert seen.isdisjoint(run.seed for run in tuning.runs)
+        merged(tuning.runs[0], tuning.changes(tuning.start)).parameters()
+    with pytest.raises(ConfigError, match="no controller"):
+        STUDY.tuning("clasical-mpc")
+
+
+def test_the_controller_is_told_the_delays_of_its_robot_and_their_error() -> None:
+    told = config_of(BEST, 0.0, 0, False, 3e-3, delay_error=1e-3).parameters().compensation
+    assert (told.sensing_delay, told.computation_delay) == pytest.approx((1e-3, 4e-3))
+    chosen = {"control": {"compensation": {"computation_delay": 2e-3}}}
+    assert config_of(BEST, 0.0, 0, False, 3e-3, **chosen).parameters().compensation.computation_delay == 2e-3
+
+
+def test_the_report_shows_ours_beside_the_papers_and_counts_failures() -> None:
+    def fake(controller: str, variant: str, seed: int, force: float | None) -> Result:
+        config = merged(CASES["tables-2-3-4"], {"controller": controller, "variant": variant, "seed": seed})
+        if force is None:
+            return Result(config, (), "stopped")
+        return Result(config, (Metric("E_λ", force, "N", 2.04), Metric("E_τ", 0.5 * force, "N·m")))
+
+    runs = [fake("force-feedback-mpc", "PID", seed, force) for seed, force in enumerate((2.0, 4.0, None))]
+    runs += [fake("force-feedback-mpc", "no PID", seed, force) for seed, force in enumerate((7.0, 6.0, 5.0))]
+    text = report(runs)
+    assert "3.00 ± 1.0 (2.04)" in text
+    assert "1 of 3" in text
+    assert "3.50 ± 1.5 (8.51)" in text  # Table IV: pairs of which both ended: 7 − 2 and 6 − 4
