@@ -207,6 +207,21 @@ def test_it_converges_through_a_reversal() -> None:
     assert tangential[-1] > 3.0
 
 
+def test_a_force_that_friction_cannot_carry_ends_with_an_honest_status() -> None:
+    """15 N wanted along the surface where the limit is 6 N: no solution is claimed. Control arm: 5 N are reached."""
+    for wanted, reachable in ((5.0, True), (15.0, False)):
+        solver, x0 = sliding_solver(3, 0.0, 0.3, tangential_costs=True)
+        x0[16] = 20.0
+        solver.nodes.force_reference[:, 0] = wanted
+        solver.quasi_static(x0)
+        solver.solve(x0, max_iterations=50)
+        rng = np.random.default_rng(14)
+        solutions = [solver.solve(noisy(x0, 7, rng)) for _ in range(100)]
+        assert sum(s.status == "converged" for s in solutions) >= 99 or not reachable
+        assert all((s.kkt <= 1e-4) == (s.status == "converged") for s in solutions)
+        assert all(np.all(np.isfinite(s.us)) and np.all(np.isfinite(s.xs)) for s in solutions)
+
+
 def test_the_plan_keeps_what_the_contact_can_carry() -> None:
     """Control arm: a contact that sticks predicts forces far outside, from the same state."""
     peaks = {}
