@@ -9,6 +9,11 @@ import numpy as np
 import pytest
 
 from pliant import _mpc
+from pliant.mpc.benchmark import BenchCase, NoisyLoop
+from pliant.mpc.config import ForceFeedbackMpc
+from pliant.mpc.registry import CONTROLLERS
+from pliant.robot import Robot, Tool
+from pliant.studies.config import merged
 from tests.twins.mpc_robots import catalogue_chain, random_chain
 from tests.twins.mpc_twin import AXES, Twin, node_and_twin, random_point
 
@@ -191,6 +196,28 @@ def test_warm_noisy_loop_converges_as_without_friction(dim: int, speed: float, t
         assert sum(s.kkt <= 1e-4 and s.iterations <= 8 for s in solutions) >= 999, friction
         iterations[friction] = np.mean([s.iterations for s in solutions])
     assert max(iterations.values()) < iterations[np.inf] + 1.0
+
+
+@pytest.mark.parametrize("press", [True, False])
+@pytest.mark.parametrize("friction", [0.25, 0.6])
+def test_what_the_docs_recommend_converges_and_the_default_costs_do_not(press: bool, friction: float) -> None:
+    """K_t = 1e3, B_t = 10, force costs on the normal only, as the benchmark moves. Control arm: costs on all axes."""
+    robot = Robot.load("iiwa14", tool=Tool())
+    reached = {}
+    for activation in ((0.0, 0.0, 1.0), (1.0,)):
+        own = {name: {"activation": activation} for name in ("force", "force_rate")}
+        contact = {"dimension": 3, "friction": friction, "stiffness": (1e3,), "damping": (10.0, 10.0, 100.0)}
+        settings = merged(ForceFeedbackMpc(), {"contact": contact, "costs": own})
+        assert bool(CONTROLLERS["force-feedback-mpc"].advise(robot, settings, 1e-3)) == (activation == (1.0,))
+        loop, solutions = NoisyLoop(BenchCase("", settings, robot, press=press)), []
+        for _ in range(500):
+            x = loop.next_state()
+            loop.solver.shift()
+            solutions.append(loop.solver.solve(x, max_iterations=8, tolerance=1e-4))
+            loop.follow(solutions[-1].xs)
+        reached[activation] = sum(s.kkt <= 1e-4 for s in solutions[20:]) / 480
+    assert reached[0.0, 0.0, 1.0] >= 0.999
+    assert reached[(1.0,)] < 0.95
 
 
 def test_it_converges_through_a_reversal() -> None:

@@ -132,8 +132,9 @@ void solve_repeatedly(int dof, const ModelData &m, bool bounded, const char *nam
     for (NodeData &node : nodes) {
         node.sliding_friction = sliding_friction;
         if (!std::isfinite(sliding_friction)) continue;
-        node.force_reference[0] = 0; // along the surface friction would not carry it
+        node.force_reference[0] = 0; // along the surface friction would not carry it ...
         node.force_reference[2] = 5;
+        for (int c = 0; c < 2; ++c) node.force_weight[c] = node.force_rate_weight[c] = 0; // ... nor do costs belong there
     }
     validate(chain);
     validate(m);
