@@ -37,8 +37,8 @@ def advise_mpc(robot: Robot, config: MpcConfig, period: float) -> tuple[str, ...
     if not counted:
         return ()
     return (
-        f"contact.friction with a cost on the tangential force ({' and '.join(counted)}): most solves may end before they"
-        " converge; set the activation of both terms to [0, 0, 1]",
+        f"contact.friction with costs on the tangential force ({' and '.join(counted)}): many solves may end before"
+        " they converge; set the activation of both terms to [0, 0, 1]",
     )
 
 
