@@ -9,6 +9,11 @@ import numpy as np
 import pytest
 
 from pliant import _mpc
+from pliant.mpc.benchmark import BenchCase, NoisyLoop
+from pliant.mpc.config import ForceFeedbackMpc
+from pliant.mpc.registry import CONTROLLERS
+from pliant.robot import Robot, Tool
+from pliant.studies.config import merged
 from tests.twins.mpc_robots import catalogue_chain, random_chain
 from tests.twins.mpc_twin import AXES, Twin, node_and_twin, random_point
 
@@ -193,6 +198,28 @@ def test_warm_noisy_loop_converges_as_without_friction(dim: int, speed: float, t
     assert max(iterations.values()) < iterations[np.inf] + 1.0
 
 
+@pytest.mark.parametrize("press", [True, False])
+@pytest.mark.parametrize("friction", [0.25, 0.6])
+def test_what_the_docs_recommend_converges_and_the_default_costs_do_not(press: bool, friction: float) -> None:
+    """K_t = 1e3, B_t = 10, force costs on the normal only, as the benchmark moves. Control arm: costs on all axes."""
+    robot = Robot.load("iiwa14", tool=Tool())
+    reached = {}
+    for activation in ((0.0, 0.0, 1.0), (1.0,)):
+        own = {name: {"activation": activation} for name in ("force", "force_rate")}
+        contact = {"dimension": 3, "friction": friction, "stiffness": (1e3,), "damping": (10.0, 10.0, 100.0)}
+        settings = merged(ForceFeedbackMpc(), {"contact": contact, "costs": own})
+        assert bool(CONTROLLERS["force-feedback-mpc"].advise(robot, settings, 1e-3)) == (activation == (1.0,))
+        loop, solutions = NoisyLoop(BenchCase("", settings, robot, press=press)), []
+        for _ in range(500):
+            x = loop.next_state()
+            loop.solver.shift()
+            solutions.append(loop.solver.solve(x, max_iterations=8, tolerance=1e-4))
+            loop.follow(solutions[-1].xs)
+        reached[activation] = sum(s.kkt <= 1e-4 for s in solutions[20:]) / 480
+    assert reached[0.0, 0.0, 1.0] >= 0.999
+    assert reached[(1.0,)] < 0.95
+
+
 def test_it_converges_through_a_reversal() -> None:
     """The reference turns back within the horizon: the force goes from one limit to the other."""
     solver, x0 = sliding_solver(3, 0.2, 0.25)
@@ -205,6 +232,21 @@ def test_it_converges_through_a_reversal() -> None:
     tangential = solutions[-1].xs[:, 14]
     assert tangential[0] < -3.0
     assert tangential[-1] > 3.0
+
+
+def test_a_force_that_friction_cannot_carry_ends_with_an_honest_status() -> None:
+    """15 N wanted along the surface where the limit is 6 N: no solution is claimed. Control arm: 5 N are reached."""
+    for wanted, reachable in ((5.0, True), (15.0, False)):
+        solver, x0 = sliding_solver(3, 0.0, 0.3, tangential_costs=True)
+        x0[16] = 20.0
+        solver.nodes.force_reference[:, 0] = wanted
+        solver.quasi_static(x0)
+        solver.solve(x0, max_iterations=50)
+        rng = np.random.default_rng(14)
+        solutions = [solver.solve(noisy(x0, 7, rng)) for _ in range(100)]
+        assert sum(s.status == "converged" for s in solutions) >= 99 or not reachable
+        assert all((s.kkt <= 1e-4) == (s.status == "converged") for s in solutions)
+        assert all(np.all(np.isfinite(s.us)) and np.all(np.isfinite(s.xs)) for s in solutions)
 
 
 def test_the_plan_keeps_what_the_contact_can_carry() -> None:

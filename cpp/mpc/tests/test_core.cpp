@@ -129,7 +129,13 @@ void solve_repeatedly(int dof, const ModelData &m, bool bounded, const char *nam
     double home[max_joints];
     for (int i = 0; i < dof; ++i) home[i] = i % 2 ? 0.6 : 0.1;
     std::vector<NodeData> nodes(N + 1, parameters(dof, home, bounded));
-    for (NodeData &node : nodes) node.sliding_friction = sliding_friction;
+    for (NodeData &node : nodes) {
+        node.sliding_friction = sliding_friction;
+        if (!std::isfinite(sliding_friction)) continue;
+        node.force_reference[0] = 0; // along the surface friction would not carry it ...
+        node.force_reference[2] = 5;
+        for (int c = 0; c < 2; ++c) node.force_weight[c] = node.force_rate_weight[c] = 0; // ... nor do costs belong there
+    }
     validate(chain);
     validate(m);
     validate(nodes[0], 0, dof, m, 3e-3);
@@ -166,7 +172,7 @@ void run() {
             if (dof < 7) continue;
             solve_repeatedly(dof, model(Kind::force_feedback, 3, Axes::surface, Integrator::euler), false, "force 3");
             solve_repeatedly(dof, model(Kind::force_feedback, 6, Axes::world, Integrator::euler), false, "force 6");
-            solve_repeatedly(dof, model(Kind::force_feedback, 3, Axes::local, Integrator::euler), bounded, "sliding 3", 0.3);
+            solve_repeatedly(dof, model(Kind::force_feedback, 3, Axes::local, Integrator::euler), false, "sliding 3", 0.3);
             solve_repeatedly(dof, model(Kind::force_feedback, 6, Axes::surface, Integrator::euler), false, "sliding 6", 0.3);
             solve_repeatedly(dof, model(Kind::classical, 1, Axes::world, Integrator::euler), bounded, "classical 1");
             solve_repeatedly(dof, model(Kind::classical, 3, Axes::local, Integrator::euler), false, "classical 3");

@@ -9,6 +9,7 @@ from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError
 from pliant.mpc.config import ClassicalMpc, ForceFeedbackMpc, MpcConfig, OffsetFreeMpc, TorqueFeedbackMpc
 from pliant.mpc.controller import MpcController
+from pliant.mpc.costs import Term
 from pliant.robot import Robot
 
 
@@ -26,6 +27,26 @@ def build_mpc(robot: Robot, config: MpcConfig, period: float) -> MpcController:
     return MpcController(robot, config, period)
 
 
+def advise_mpc(robot: Robot, config: MpcConfig, period: float) -> tuple[str, ...]:
+    """What makes the solver converge badly: force costs along a surface on which the predicted contact slides."""
+    if config.contact.friction is None:
+        return ()
+    phases = [phase.over(config.costs) for phase in config.phases.values() if phase.contact]
+    terms = {"force": [costs.force for costs in phases], "force_rate": [costs.force_rate for costs in phases]}
+    counted = [name for name, own in terms.items() if any(_counts_tangents(term) for term in own)]
+    if not counted:
+        return ()
+    return (
+        f"contact.friction with costs on the tangential force ({' and '.join(counted)}): many solves may end before"
+        " they converge; set the activation of both terms to [0, 0, 1]",
+    )
+
+
+def _counts_tangents(term: Term) -> bool:
+    given = term.activation[:2]
+    return (term.weight > 0.0 or bool(term.terminal)) and any(value > 0.0 for value in given)
+
+
 CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
     entry.name: entry
     for entry in (
@@ -34,6 +55,7 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
             "predictive, visco-elastic contact, the measured force is part of the state (Kleff et al. 2024)",
             ForceFeedbackMpc(),
             build_mpc,
+            advise_mpc,
         ),
         ControllerEntry(
             "offset-free-mpc",
