@@ -1,0 +1,68 @@
+"""The file of a sweep: what goes in comes out, and what is not such a file is refused."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from pliant.cli.study import resume_command
+from pliant.errors import PliantError
+from pliant.studies import parquet
+from pliant.studies.results import FILE, Request, ResultStore, read_results
+from pliant.studies.sweep import asked_runs, sweep
+from tests.studies import toy
+
+REQUEST = Request("toy", ("fine", "physics"), 2, ("gains.a=0.3",))
+
+
+def _written(folder: Path) -> ResultStore:
+    asked = asked_runs(REQUEST)
+    with ResultStore(folder, REQUEST, asked) as store:
+        for run in sweep("toy", asked):
+            store.add(run)
+    return store
+
+
+def test_runs_come_back_bit_for_bit(tmp_path: Path) -> None:
+    store = _written(tmp_path)
+    request, runs = read_results(tmp_path)
+    assert request == REQUEST
+    assert [repr(run) for run in runs] == [repr(run) for run in store.runs]  # repr: NaN is not equal to itself
+    assert math.isnan(runs[0].result.metrics[1].value)
+    assert type(runs[0].result.config) is toy.ToyConfig
+
+
+def test_a_run_is_in_the_file_within_a_second_though_no_other_follows(tmp_path: Path) -> None:
+    asked = asked_runs(REQUEST)
+    with ResultStore(tmp_path, REQUEST, asked) as store:
+        store.add(next(sweep("toy", asked)))
+        time.sleep(1.4)
+        assert len(read_results(tmp_path)[1]) == 1
+
+
+def _refused(folder: Path, study: str | None = None) -> str:
+    with pytest.raises(PliantError) as caught:
+        resume_command(None, None, folder, study, 1, None)  # type: ignore[arg-type]
+    return str(caught.value)
+
+
+def test_what_cannot_be_resumed_is_refused_in_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "is not a folder" in _refused(tmp_path / "none")
+    assert "cannot be read" in _refused(tmp_path)
+    _written(tmp_path)
+    assert "holds results of study 'toy', not of 'stack'" in _refused(tmp_path, "stack")
+    whole = (tmp_path / FILE).read_bytes()
+    for damaged in (whole[: len(whole) // 2], b"", b"PAR1" + bytes(50) + whole[54:]):
+        (tmp_path / FILE).write_bytes(damaged)
+        assert re.search(r"is not a whole Parquet file|does not hold the results", _refused(tmp_path))
+    pq.write_table(pa.table({"x": [1]}), tmp_path / FILE)
+    assert "not one of pliant's" in _refused(tmp_path)
+    monkeypatch.setattr(parquet, "__version__", "0.0.9")
+    _written(tmp_path)
+    assert re.search(r"written by pliant 0\.0\.9, this is pliant \d", _refused(tmp_path))

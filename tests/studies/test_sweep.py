@@ -1,0 +1,140 @@
+"""Sweeps through the command line: processes, a cluster, killed workers, interruptions."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from tests.studies.commands import environment, rows, start, study
+
+pytestmark = pytest.mark.study
+CASES = ("--case", "physics", "--case", "fine", "--case", "bug", "--seeds", "3")
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("alone")
+    code, _, errors = study("toy", *CASES, "--out", folder)
+    assert code == 0, errors
+    return folder
+
+
+def test_a_row_per_run_in_the_order_asked_for(alone: Path) -> None:
+    found = rows(alone).to_pylist()
+    assert [(row["case"], row["seed"]) for row in found] == [
+        (c, s) for c in ("physics", "fine", "bug") for s in (0, 1, 2)
+    ]
+    assert [row["status"] for row in found] == ["failed"] * 3 + ["finished"] * 3 + ["crashed"] * 3
+    assert found[0]["failure"].startswith("it fell over")
+    assert "a bug in a run" in found[-1]["failure"]
+    assert found[3]["E_λ [N]"] > 0.0
+    assert found[0]["E_λ [N]"] is None
+
+
+def test_two_processes_give_the_same_rows(alone: Path, tmp_path: Path) -> None:
+    code, _, errors = study("toy", *CASES, "--jobs", 2, "--out", tmp_path)
+    assert code == 0, errors
+    assert rows(tmp_path).equals(rows(alone), check_metadata=True)
+
+
+@pytest.fixture
+def scheduler() -> Iterator[str]:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment()}
+    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", address, "--no-dashboard"]
+    worker = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-dashboard"]
+    started = [subprocess.Popen(dask, **quiet), *(subprocess.Popen(worker, **quiet) for _ in range(2))]
+    deadline = time.monotonic() + 20.0
+    while time.monotonic() < deadline:
+        try:
+            socket.create_connection(("127.0.0.1", int(address.rsplit(":", 1)[1])), timeout=1.0).close()
+            break
+        except OSError:
+            time.sleep(0.1)
+    yield address
+    for process in reversed(started):
+        process.terminate()
+        process.wait(20)
+
+
+def test_a_cluster_gives_the_same_rows(alone: Path, tmp_path: Path, scheduler: str) -> None:
+    code, _, errors = study("toy", *CASES, "--scheduler", scheduler, "--out", tmp_path)
+    assert code == 0, errors
+    assert rows(tmp_path).equals(rows(alone), check_metadata=True)
+
+
+@pytest.mark.parametrize("deaf", [False, True])
+def test_a_scheduler_that_does_not_answer_is_one_sentence(deaf: bool, tmp_path: Path) -> None:
+    with socket.socket() as port:
+        port.bind(("127.0.0.1", 0))
+        if deaf:
+            port.listen()
+        code, _, errors = study("toy", "--scheduler", f"tcp://127.0.0.1:{port.getsockname()[1]}", "--out", tmp_path)
+    assert code == 2
+    assert "no dask scheduler answers" in errors
+    assert len(errors.strip().splitlines()) == 1
+    assert not (tmp_path / "results.parquet").exists()
+
+
+def test_a_killed_worker_costs_nothing_but_a_run_that_always_kills_fails(tmp_path: Path) -> None:
+    mark = f"mark={tmp_path}"
+    cases = ("--case", "slow", "--case", "dies-once", "--case", "dies", "--seeds", "1", "--set", mark)
+    code, _, errors = study("toy", *cases, "--jobs", 2, "--out", tmp_path / "out")
+    assert code == 0, errors
+    assert "distributed" not in errors
+    assert rows(tmp_path / "out")["status"].to_pylist() == ["finished", "finished", "lost"]
+    assert "its process died" in rows(tmp_path / "out")["failure"].to_pylist()[-1]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_an_interrupted_study_is_resumed_to_the_same_table(jobs: int, tmp_path: Path) -> None:
+    cases = ("toy", "--case", "slow", "--seeds", "24")
+    folder = tmp_path / "cut"
+    process = start(*cases, "--jobs", jobs, "--out", folder, start_new_session=True)
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline:
+        if (folder / "results.parquet").exists() and pq.read_table(folder / "results.parquet").num_rows > 0:
+            break
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
+    out, errors = process.communicate(timeout=60)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    assert f"--resume {folder}" in errors
+    kept = rows(folder)
+    assert 0 < kept.num_rows < 24
+    assert (folder / "summary.json").exists()
+    assert (folder / "report.md").exists()
+    code, out, errors = study("--resume", folder)
+    assert code == 0, errors
+    assert "report" in out
+    table = rows(folder)
+    assert table["seed"].to_pylist() == list(range(24))
+    assert set(table["status"].to_pylist()) == {"finished"}
+
+
+def test_a_mistake_is_found_before_anything_runs(tmp_path: Path) -> None:
+    code, _, errors = study("toy", "--set", "robot=missing.urdf", "--out", tmp_path)
+    assert code == 2
+    assert "missing.urdf" in errors
+    assert not (tmp_path / "results.parquet").exists()
+
+
+def test_an_interrupted_and_a_whole_study_hold_the_same_rows(alone: Path, tmp_path: Path) -> None:
+    """A file from which rows are missing is filled up to the very table of an uninterrupted study."""
+    table = pq.read_table(alone / "results.parquet")
+    pq.write_table(table.slice(2, 3), tmp_path / "results.parquet")
+    code, _, errors = study("--resume", tmp_path, "--jobs", 2)
+    assert code == 0, errors
+    assert rows(tmp_path).equals(rows(alone), check_metadata=True)

@@ -1,0 +1,62 @@
+"""The search over a controller's parameters, on a study whose minimum is known."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from pliant.errors import ConfigError
+from pliant.studies.registry import get_study
+from pliant.studies.search import search
+from pliant.studies.tuning import PENALTY, Range, Tuning, find_tuning, nested
+from tests.studies import toy
+from tests.studies.commands import study
+
+
+def test_the_search_finds_the_minimum_and_begins_at_the_start() -> None:
+    assert get_study("toy") is toy.STUDY
+    made = list(search("toy", toy.STUDY.tuning("idle"), 64, seed=1))
+    assert dict(made[0].values) == {"gains.a": 1.0, "gains.b": 5.0}
+    best = min(made, key=lambda trial: trial.objective)
+    assert made[0].objective == pytest.approx(10.1)
+    assert best.objective < 0.6  # of 0.1 at a = 0.1, b = 2
+
+
+def test_failed_runs_and_impossible_values_cost_a_finite_penalty() -> None:
+    tuning = toy.STUDY.tuning("idle")
+    failing = Tuning(tuning.parameters, [toy.STUDY.case("physics")], tuning.objective, tuning.start)
+    (trial,) = search("toy", failing, 1)
+    assert (trial.objective, trial.failed) == (PENALTY, 1)
+    assert trial.failure is not None
+
+
+def test_mistakes_in_a_tuning_are_sentences() -> None:
+    with pytest.raises(ConfigError, match="low above 0"):
+        Range(0.0, 1.0, log=True)
+    with pytest.raises(ConfigError, match="no controller 'idel'.*did you mean 'idle'"):
+        find_tuning(toy.STUDY, "idel")
+    with pytest.raises(ConfigError, match="cannot be tuned"):
+        find_tuning(toy.STUDY, "other")
+    assert nested({"a.b": 1.0, "a.c": 2.0}) == {"a": {"b": 1.0, "c": 2.0}}
+
+
+@pytest.mark.study
+def test_the_command_writes_the_same_trials_on_one_process_and_on_two(tmp_path: Path) -> None:
+    tables = []
+    for jobs in (1, 2):
+        folder = tmp_path / str(jobs)
+        code, out, errors = study("toy", "--tune", "idle", "--trials", 20, "--jobs", jobs, "--out", folder)
+        assert code == 0, errors
+        assert "gains.a" in out
+        tables.append(pq.read_table(folder / "trials.parquet"))
+        tuned = tomllib.loads((folder / "tuned.toml").read_text())
+        assert (tuned["study"], tuned["controller"]) == ("toy", "idle")
+        assert set(tuned["gains"]) == {"a", "b"}
+        assert (folder / "trials.png").stat().st_size > 10_000
+    assert tables[0].equals(tables[1])
+    code, _, errors = study("toy", "--tune", "nobody", "--out", tmp_path)
+    assert code == 2
+    assert "valid: 'idle', 'other'" in errors
