@@ -246,7 +246,7 @@ class OffsetFreeMpc(ForceFeedbackMpc):
         sensing_delay=1e-3,
         computation_delay=5e-3,
         averaging=4e-3,
-        force_integral=15.0,
+        force_integral=20.0,
         environment=True,
     )
     costs: Costs = Costs(
