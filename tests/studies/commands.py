@@ -37,3 +37,9 @@ def study(*arguments: object) -> tuple[int, str, str]:
 
 def rows(folder: Path) -> pa.Table:
     return pq.read_table(folder / "results.parquet").drop(["wall [s]"])
+
+
+def content(folder: Path) -> str:
+    """Schema and rows as text: NaN is not equal to itself."""
+    table = rows(folder)
+    return f"{table.schema.to_string(show_schema_metadata=True, truncate_metadata=False)}\n{table.to_pylist()!r}"

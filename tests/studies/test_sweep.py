@@ -14,7 +14,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from tests.studies.commands import environment, rows, start, study
+from tests.studies.commands import content, environment, rows, start, study
 
 pytestmark = pytest.mark.study
 CASES = ("--case", "physics", "--case", "fine", "--case", "bug", "--seeds", "3")
@@ -43,7 +43,7 @@ def test_a_row_per_run_in_the_order_asked_for(alone: Path) -> None:
 def test_two_processes_give_the_same_rows(alone: Path, tmp_path: Path) -> None:
     code, _, errors = study("toy", *CASES, "--jobs", 2, "--out", tmp_path)
     assert code == 0, errors
-    assert rows(tmp_path).equals(rows(alone), check_metadata=True)
+    assert content(tmp_path) == content(alone)
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def scheduler() -> Iterator[str]:
 def test_a_cluster_gives_the_same_rows(alone: Path, tmp_path: Path, scheduler: str) -> None:
     code, _, errors = study("toy", *CASES, "--scheduler", scheduler, "--out", tmp_path)
     assert code == 0, errors
-    assert rows(tmp_path).equals(rows(alone), check_metadata=True)
+    assert content(tmp_path) == content(alone)
 
 
 @pytest.mark.parametrize("deaf", [False, True])
@@ -137,4 +137,4 @@ def test_an_interrupted_and_a_whole_study_hold_the_same_rows(alone: Path, tmp_pa
     pq.write_table(table.slice(2, 3), tmp_path / "results.parquet")
     code, _, errors = study("--resume", tmp_path, "--jobs", 2)
     assert code == 0, errors
-    assert rows(tmp_path).equals(rows(alone), check_metadata=True)
+    assert content(tmp_path) == content(alone)

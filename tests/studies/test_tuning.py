@@ -36,7 +36,7 @@ def test_failed_runs_and_impossible_values_cost_a_finite_penalty() -> None:
 def test_mistakes_in_a_tuning_are_sentences() -> None:
     with pytest.raises(ConfigError, match="low above 0"):
         Range(0.0, 1.0, log=True)
-    with pytest.raises(ConfigError, match="no controller 'idel'.*did you mean 'idle'"):
+    with pytest.raises(ConfigError, match=r"no controller 'idel'.*did you mean 'idle'"):
         find_tuning(toy.STUDY, "idel")
     with pytest.raises(ConfigError, match="cannot be tuned"):
         find_tuning(toy.STUDY, "other")

@@ -120,10 +120,12 @@ def _outcome(future: Future[Any]) -> Any:
 
 @contextmanager
 def _local(jobs: int) -> Generator[Client]:
+    import dask.config
     from distributed import Client, LocalCluster
 
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # inherited by the workers: one thread each
-    with _shielded():
+    # a worker that dies casts suspicion on all tasks it holds: it holds none but the one it runs
+    with _shielded(), dask.config.set({"distributed.scheduler.worker-saturation": 1.0}):
         cluster = LocalCluster(
             n_workers=jobs, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
         )
