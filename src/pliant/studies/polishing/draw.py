@@ -73,6 +73,7 @@ def _moments(config: PolishingConfig, experiment: Experiment, log: Log) -> Figur
 def _snapshot(log: Log, q: Array, moment: int) -> Snapshot:
     position = log[f"truth/{FRAME}/position"]
     drawn, wanted = position[: moment + 1 : 10], log[f"reference/{FRAME}/position"][: moment + 1 : 10]
-    arrow = Arrow(position[moment], _METRES_PER_NEWTON * log[f"truth/{FRAME}/wrench"][moment, :3], _FORCE)
+    beside = position[moment] + np.array([0.06, 0.0, 0.0])  # where the tool does not hide it
+    arrow = Arrow(beside, _METRES_PER_NEWTON * log[f"truth/{FRAME}/wrench"][moment, :3], _FORCE)
     paths = (Path3(wanted, _REFERENCE, 0.003), Path3(drawn, _TRACE, 0.003)) if len(drawn) > 1 else ()
     return Snapshot(q[moment], paths, arrows=(arrow,))
