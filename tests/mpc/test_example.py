@@ -1,24 +1,30 @@
-"""Example 05 does what its docstring says, on two robots."""
+"""Examples 05 and 06 do what their docstrings say."""
 
 from __future__ import annotations
 
 import importlib.util
 import re
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "05_force_feedback_mpc.py"
+FOLDER = Path(__file__).parents[2] / "examples"
+EXAMPLE = FOLDER / "05_force_feedback_mpc.py"
 
 
-@pytest.mark.parametrize("robot", ["iiwa14", "lwr4"])
-def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
-    spec = importlib.util.spec_from_file_location("example_05", EXAMPLE)
+def loaded(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    module.main(robot)
+    return module
+
+
+@pytest.mark.parametrize("robot", ["iiwa14", "lwr4"])
+def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
+    loaded(EXAMPLE).main(robot)
     said = capsys.readouterr().out
     found = re.fullmatch(rf"{robot}: contact felt at ([\d.]+) s, asked 20 N, got ([\d.]+) ± ([\d.]+) N\n", said)
     assert found, said
@@ -33,3 +39,15 @@ def test_it_is_short() -> None:
     code = [line for line in source.splitlines() if line.strip() and not line.strip().startswith("#")]
     body = [line for line in code if not line.startswith(("import", "from"))]
     assert len(body) <= 40
+
+
+def test_compensation_presses_where_the_stock_controller_does_not(capsys: pytest.CaptureFixture[str]) -> None:
+    module = loaded(FOLDER / "06_offset_free_mpc.py")
+    means: dict[str, float] = {}
+    for which in ("offset-free", "stock"):
+        module.main(which)
+        found = re.match(rf"{which}: asked 20 N, got ([\d.]+) ± ([\d.]+) N", capsys.readouterr().out)
+        assert found
+        means[which] = float(found[1])
+    assert means["offset-free"] == pytest.approx(20.0, abs=0.2)
+    assert abs(means["stock"] - 20.0) > 2.0  # control arm
