@@ -13,8 +13,9 @@ from typing import Any, Literal
 import numpy as np
 import pinocchio as pin
 
-from pliant.errors import ConfigError, SignalError
+from pliant.errors import ConfigError
 from pliant.estimation.filters import Butterworth, Memory
+from pliant.estimation.ordering import time_since
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
@@ -90,9 +91,7 @@ class ExternalTorqueEstimator(Estimator[ExternalTorqueState]):
             SignalError: the measurement is older than the last one.
         """
         estimate, inner = self.inner.step(measurement, state.inner)
-        period = measurement.time - state.time
-        if period < 0.0:
-            raise SignalError(f"measurements must arrive in order, got t = {measurement.time} s after {state.time} s")
+        period = time_since(state.time, measurement)
         external, memory = self._external_torque(measurement, state, period)
         estimate = self._completed(estimate, measurement.q, external)
         return estimate, ExternalTorqueState(inner, measurement.time, measurement.v, memory)

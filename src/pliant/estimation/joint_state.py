@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pliant.errors import ConfigError, SignalError
+from pliant.errors import ConfigError
+from pliant.estimation.ordering import time_since
 from pliant.interfaces import Estimator
 from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
@@ -59,9 +60,7 @@ class JointStateFilter(Estimator[JointStateState]):
             SignalError: the measurement is older than the last one.
         """
         estimate, inner = self.inner.step(measurement, state.inner)
-        period = measurement.time - state.time
-        if period < 0.0:
-            raise SignalError(f"measurements must arrive in order, got t = {measurement.time} s after {state.time} s")
+        period = time_since(state.time, measurement)
         moved = state.q + 0.5 * period * (state.v + estimate.v)
         readings = state.readings + 1
         gain = min(1.0, max(period / self.memory, 1.0 / readings))

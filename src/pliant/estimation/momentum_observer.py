@@ -22,7 +22,8 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from pliant.errors import ConfigError, SignalError, options
+from pliant.errors import ConfigError, options
+from pliant.estimation.ordering import time_since
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
@@ -121,9 +122,7 @@ class MomentumObserver(Estimator[MomentumState]):
             SignalError: the measurement is older than the last one.
         """
         estimate, inner = self.inner.step(measurement, state.inner)
-        period = measurement.time - state.time
-        if period < 0.0:
-            raise SignalError(f"measurements must arrive in order, got t = {measurement.time} s after {state.time} s")
+        period = time_since(state.time, measurement)
         if period == 0.0:  # the first measurement starts the observer and is its first step, too
             return replace(estimate, disturbance=state.disturbance), replace(state, inner=inner)
         torques = (*state.torques, self._applied(measurement))

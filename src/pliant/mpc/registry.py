@@ -62,6 +62,7 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
             "force feedback with disturbance observer, prediction over delays and force integral",
             OffsetFreeMpc(),
             build_mpc,
+            advise_mpc,
         ),
         ControllerEntry(
             "torque-feedback-mpc",

@@ -19,6 +19,17 @@ _PERFECT: Mapping[str, Mapping[str, Any]] = {
     "classical-mpc": {"costs": _COSTS, "phases": _PHASES},
 }
 
+_RIGID: Mapping[str, Any] = {
+    "costs": {
+        "posture": {"weight": 0.00037},
+        "torque": {"weight": 1.1e-06},
+        "rotation": {"weight": 93.0},
+        "velocity": {"weight": 0.18},
+    },
+    "phases": {"ramp": _PLANE, "contact": _PLANE, "circle": {"translation": {"weight": 2200.0}}},
+}
+"""the best trial of both rigid models was the same"""
+
 _TUNED: Mapping[str, Mapping[str, Any]] = {
     "force-feedback-mpc": {
         "contact": {"stiffness": (3e3,), "damping": (70.0,)},
@@ -32,24 +43,8 @@ _TUNED: Mapping[str, Mapping[str, Any]] = {
         },
         "phases": {"ramp": _PLANE, "contact": _PLANE, "circle": {"translation": {"weight": 690.0}}},
     },
-    "torque-feedback-mpc": {
-        "costs": {
-            "posture": {"weight": 0.00037},
-            "torque": {"weight": 1.1e-06},
-            "rotation": {"weight": 93.0},
-            "velocity": {"weight": 0.18},
-        },
-        "phases": {"ramp": _PLANE, "contact": _PLANE, "circle": {"translation": {"weight": 2200.0}}},
-    },
-    "classical-mpc": {
-        "costs": {
-            "posture": {"weight": 0.00037},
-            "torque": {"weight": 1.1e-06},
-            "rotation": {"weight": 93.0},
-            "velocity": {"weight": 0.18},
-        },
-        "phases": {"ramp": _PLANE, "contact": _PLANE, "circle": {"translation": {"weight": 2200.0}}},
-    },
+    "torque-feedback-mpc": _RIGID,
+    "classical-mpc": _RIGID,
     "offset-free-mpc": {
         "costs": {
             "posture": {"weight": 0.01},
