@@ -13,6 +13,7 @@ from pliant.spatial import Array
 from pliant.telemetry.plots import style
 
 _MOST_POINTS = 4000  # more than the pixels of a panel's width; beyond, minimum and maximum of each stretch are drawn
+_CROWDED = 0.08  # share of the width within which two names would touch
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,18 +96,22 @@ def draw(ax: Axes, panel: Panel) -> None:
 
 
 def mark_phases(ax: Axes, phases: Sequence[tuple[float, str]], named: bool) -> None:
-    """Thin lines where phases begin, with their names above the axes."""
+    """Thin lines where phases begin, with their names above the axes; the name of one that begins soon after another
+    stands higher."""
     low, high = ax.get_xlim()
+    before, level = -np.inf, 0
     for time, name in phases:
         if not name or not low <= time <= high:
             continue
         ax.axvline(time, color=style.MUTED, linewidth=0.7, linestyle=(0, (3, 3)))
+        level = 1 - level if time - before < _CROWDED * (high - low) else 0
+        before = time
         if named:
             under_title = bool(ax.get_title(loc="left"))
             ax.annotate(
                 name,
                 (time, 1.0),
-                (3, -2 if under_title else 2),
+                (3, (-2 if under_title else 2) + level * (style.SMALL + 1.0)),
                 xycoords=("data", "axes fraction"),
                 textcoords="offset points",
                 va="top" if under_title else "bottom",
