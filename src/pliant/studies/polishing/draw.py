@@ -16,7 +16,7 @@ from pliant.studies.runner import file_stem
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, style, time_series
 
-_METRES_PER_NEWTON = 0.003
+_METRES_PER_NEWTON = 0.004
 _CAMERA = Camera(look_at=(0.50, 0.0, 0.24), distance=1.45, azimuth=128.0, elevation=-16.0)
 _REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (0.76, 0.18, 0.18, 1.0)
 
@@ -49,12 +49,12 @@ def _history(config: PolishingConfig, log: Log) -> Figure:
 def _moments(config: PolishingConfig, experiment: Experiment, log: Log) -> Figure | None:
     """Reach, first contact, ramp, circle: the arm with what the tool has drawn so far and the force it feels."""
     plant = experiment.plant.inner if isinstance(experiment.plant, ImperfectPlant) else experiment.plant
-    if not isinstance(plant, MujocoPlant):
-        return None
     time, q = log.time("truth/q"), log["truth/q"]
     task = config.task
     instants = [0.5 * task.reach, task.touch + 0.05, task.circle, 0.5 * (task.circle + config.duration)]
     instants = [instant for instant in instants if instant <= time[-1]]
+    if not isinstance(plant, MujocoPlant) or not instants:
+        return None
     moments = np.searchsorted(time, instants)
     pictures = render(
         plant.model, [_snapshot(log, q, int(moment)) for moment in moments], _CAMERA, width=520, height=420
@@ -74,6 +74,7 @@ def _snapshot(log: Log, q: Array, moment: int) -> Snapshot:
     position = log[f"truth/{FRAME}/position"]
     drawn, wanted = position[: moment + 1 : 10], log[f"reference/{FRAME}/position"][: moment + 1 : 10]
     beside = position[moment] + np.array([0.06, 0.0, 0.0])  # where the tool does not hide it
-    arrow = Arrow(beside, _METRES_PER_NEWTON * log[f"truth/{FRAME}/wrench"][moment, :3], _FORCE)
+    force = log[f"truth/{FRAME}/wrench"][moment, :3]
+    arrows = (Arrow(beside, _METRES_PER_NEWTON * force, _FORCE),) if force.any() else ()
     paths = (Path3(wanted, _REFERENCE, 0.003), Path3(drawn, _TRACE, 0.003)) if len(drawn) > 1 else ()
-    return Snapshot(q[moment], paths, arrows=(arrow,))
+    return Snapshot(q[moment], paths, arrows)
