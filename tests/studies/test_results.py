@@ -46,6 +46,15 @@ def test_a_run_is_in_the_file_within_a_second_though_no_other_follows(tmp_path: 
         assert len(read_results(tmp_path)[1]) == 1
 
 
+def test_a_study_started_anew_keeps_what_an_earlier_one_found(tmp_path: Path) -> None:
+    rows = len(_written(tmp_path).runs)
+    for _ in range(2):  # the second time the file is empty: it does not push the first one out
+        with ResultStore(tmp_path, REQUEST, asked_runs(REQUEST)):
+            pass
+    assert pq.read_table(tmp_path / FILE).num_rows == 0
+    assert pq.read_table(tmp_path / f"{FILE}.old").num_rows == rows > 0
+
+
 def _refused(folder: Path, study: str | None = None) -> str:
     with pytest.raises(PliantError) as caught:
         resume_command(None, None, folder, study, 1, None)  # type: ignore[arg-type]

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -46,15 +47,16 @@ def test_two_processes_give_the_same_rows(alone: Path, tmp_path: Path) -> None:
     assert content(tmp_path) == content(alone)
 
 
-@pytest.fixture
-def scheduler() -> Iterator[str]:
+@contextmanager
+def cluster(workers: int) -> Iterator[str]:
+    """A dask scheduler and its workers, each a process of its own."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment()}
     dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", address, "--no-dashboard"]
     worker = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-dashboard"]
-    started = [subprocess.Popen(dask, **quiet), *(subprocess.Popen(worker, **quiet) for _ in range(2))]
+    started = [subprocess.Popen(dask, **quiet), *(subprocess.Popen(worker, **quiet) for _ in range(workers))]
     deadline = time.monotonic() + 20.0
     while time.monotonic() < deadline:
         try:
@@ -62,10 +64,18 @@ def scheduler() -> Iterator[str]:
             break
         except OSError:
             time.sleep(0.1)
-    yield address
-    for process in reversed(started):
-        process.terminate()
-        process.wait(20)
+    try:
+        yield address
+    finally:
+        for process in reversed(started):
+            process.terminate()
+            process.wait(20)
+
+
+@pytest.fixture
+def scheduler() -> Iterator[str]:
+    with cluster(2) as address:
+        yield address
 
 
 def test_a_cluster_gives_the_same_rows(alone: Path, tmp_path: Path, scheduler: str) -> None:
@@ -85,6 +95,13 @@ def test_a_scheduler_that_does_not_answer_is_one_sentence(deaf: bool, tmp_path: 
     assert "no dask scheduler answers" in errors
     assert len(errors.strip().splitlines()) == 1
     assert not (tmp_path / "results.parquet").exists()
+
+
+def test_a_scheduler_without_workers_is_one_sentence(tmp_path: Path) -> None:
+    with cluster(0) as address:
+        code, _, errors = study("toy", "--scheduler", address, "--out", tmp_path)
+    assert code == 2, errors
+    assert "has no workers" in errors
 
 
 def test_a_killed_worker_costs_nothing_but_a_run_that_always_kills_fails(tmp_path: Path) -> None:

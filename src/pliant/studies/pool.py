@@ -8,7 +8,7 @@ import signal
 import socket
 import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from queue import Empty, SimpleQueue
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 _KNOCK, _ANSWER = 2.0, 3.0  # s for a scheduler's port to open, and for what is behind it to answer as dask does
+_WORKERS = 15.0  # s for the first worker to report: they may have been started together with the scheduler
 _LOOK = 0.2  # s between two looks for Ctrl-C
 
 
@@ -131,6 +132,8 @@ def _local(jobs: int) -> Generator[Client]:
         )
     with cluster, Client(cluster) as client:
         yield client
+        with suppress(TimeoutError):  # a worker that is closed while it takes a dead one's place complains aloud
+            client.wait_for_workers(jobs, timeout=_WORKERS)
 
 
 @contextmanager
@@ -144,6 +147,12 @@ def _connected(scheduler: str) -> Generator[Client]:
         why = str(error) or type(error).__name__
         raise ConfigError(f"no dask scheduler answers at {scheduler} ({why}); `dask scheduler` starts one") from None
     with client:
+        try:
+            client.wait_for_workers(1, timeout=_WORKERS)
+        except TimeoutError:
+            raise ConfigError(
+                f"the dask scheduler {scheduler} has no workers; `dask worker {scheduler}` starts some"
+            ) from None
         _check_versions(client, scheduler)
         yield client
 

@@ -67,7 +67,7 @@ class ResultStore:
     def __init__(self, folder: Path, request: Request, asked: Sequence[CaseConfig]) -> None:
         """
         Args:
-            folder: where the file goes; one that is there is replaced.
+            folder: where the file goes; one that is there and is not gone on with is kept as `results.parquet.old`.
             request: what was asked for.
             asked: every run of the sweep, in the order of the rows.
         """
@@ -85,6 +85,10 @@ class ResultStore:
         return [self._runs[place] for place in sorted(self._runs)]
 
     def __enter__(self) -> ResultStore:
+        if not self._runs and _holds_rows(
+            self.path
+        ):  # a study that is started anew must not eat what an earlier one found
+            self.path.replace(self.path.with_suffix(".parquet.old"))
         self.flush()  # even a sweep that is interrupted before its first result can be resumed
         return self
 
@@ -121,6 +125,16 @@ class ResultStore:
             self.flush()
         except OutputError:
             self._written = -math.inf  # the next `add`, or the end, tries again where the error is seen
+
+
+def _holds_rows(path: Path) -> bool:
+    """Whether there is a file that somebody may want back; one that cannot be read counts."""
+    if not path.exists():
+        return False
+    try:
+        return read_parquet(path)[0].num_rows > 0
+    except OutputError:
+        return True
 
 
 def key(config: CaseConfig) -> str:
