@@ -39,19 +39,15 @@ def test_noise_shrinks_as_the_docstring_says() -> None:
 
 
 def test_there_is_no_lag() -> None:
-    """Without noise the moving joint is followed to the error of the trapezium; a low-pass of the same noise lags."""
+    """Without noise the moving joint is followed to the error of the trapezium; control arm: a low-pass of the same
+    memory lags."""
     assert np.abs(errors(JointStateFilter(DirectEstimator(), 0.3), noise=0.0)).max() < 1e-6
-    share = 2.0 * (PERIOD / 0.3) / 2.0
-    lagging = np.abs(_low_passed(share)).max()
-    assert lagging > 0.3
-
-
-def _low_passed(share: float) -> np.ndarray:
-    q, out = 0.0, []
+    q, lag = 0.0, 0.0
     for tick in range(3000):
-        q += share * (np.sin(3.0 * tick * PERIOD) - q)
-        out.append(q - np.sin(3.0 * tick * PERIOD))
-    return np.array(out)
+        now = np.sin(3.0 * tick * PERIOD)
+        q += PERIOD / 0.3 * (now - q)
+        lag = max(lag, abs(q - now))
+    assert lag > 0.3
 
 
 def test_a_velocity_error_shifts_it_by_the_memory() -> None:
@@ -72,8 +68,6 @@ def test_other_signals_pass_and_bad_input_is_named() -> None:
     state = estimator.init(measured(0, rng))
     estimate, after = estimator.step(measured(5, rng), state)
     np.testing.assert_array_equal(estimate.torque, 0.0)
-    again, _ = estimator.step(measured(5, np.random.default_rng(1)), state)
-    assert again.q.shape == estimate.q.shape
     with pytest.raises(SignalError, match="in order"):
         estimator.step(measured(4, rng), after)
     for memory in (0.0, -1.0, float("nan")):
