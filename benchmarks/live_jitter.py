@@ -21,12 +21,12 @@ from typing import Any
 import numpy as np
 
 from pliant import loop
-from pliant.live.launch import page_beside
-from pliant.live.pace import Pace
-from pliant.live.session import Session
+from pliant.experiments.config import merged
+from pliant.experiments.registry import get_study
+from pliant.live.loop.pace import Pace
+from pliant.live.loop.session import Session
+from pliant.live.server.launch import page_beside
 from pliant.signals import Tick
-from pliant.studies.config import merged
-from pliant.studies.registry import get_study
 
 _SKIPPED = 500  # first periods: caches and the browser's start
 _FLAGS = ["--no-sandbox", "--disable-quic", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

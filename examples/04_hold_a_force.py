@@ -18,9 +18,9 @@ from pliant.controllers.fractal_impedance import FractalImpedance
 from pliant.controllers.profiles import Shape
 from pliant.controllers.task import FrameTask
 from pliant.estimation import WrenchEstimator
-from pliant.references.exploration_config import ExplorationConfig
-from pliant.references.haptic_exploration import HapticExploration
-from pliant.references.harmonic_planner import HarmonicPlanner
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.haptic_exploration import HapticExploration
+from pliant.references.planners.harmonic_planner import HarmonicPlanner
 from pliant.references.schedule import Schedule
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning, Reference, TaskReference, Tick

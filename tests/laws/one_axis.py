@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pliant.references.exploration_config import ExplorationConfig
-from pliant.references.haptic_exploration import HapticExploration
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.haptic_exploration import HapticExploration
 from pliant.references.schedule import Mailbox
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 

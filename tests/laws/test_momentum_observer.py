@@ -13,7 +13,7 @@ from pliant.interfaces import ReferenceSource
 from pliant.robot import Robot, Tool
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, MujocoPlant, Scene, Surface, table
-from pliant.simulation.actuation import ActuationConfig
+from pliant.simulation.imperfections.actuation import ActuationConfig
 
 GAIN = 30.0  # rad/s
 

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.references import harmonic_attractor as attractor
-from pliant.references.superposition import MotionLimits, Plan
+from pliant.references.planners import harmonic_attractor as attractor
+from pliant.references.planners.superposition import MotionLimits, Plan
 
 LIMITS = MotionLimits(speed=0.3, acceleration=3.0)
 POINT = st.tuples(*[st.floats(-0.5, 0.5)] * 3)

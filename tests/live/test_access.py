@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import pytest
 
 from pliant.errors import ConfigError
-from pliant.live.access import Gate, Head, is_loopback
-from pliant.live.server import PageServer
+from pliant.live.server.access import Gate, Head, is_loopback
+from pliant.live.server.web import PageServer
 
 TOKEN = "a-secret"
 

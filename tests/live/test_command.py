@@ -12,11 +12,11 @@ import pytest
 from typer.testing import CliRunner
 
 from pliant.cli.app import app
-from pliant.live.replay import LoggedScene, ReplayPage
-from pliant.live.server import PageServer
-from pliant.studies.config import merged
-from pliant.studies.registry import get_study
-from pliant.studies.runner import run_case
+from pliant.experiments.config import merged
+from pliant.experiments.registry import get_study
+from pliant.experiments.runner import run_case
+from pliant.live.page.replay import LoggedScene, ReplayPage
+from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
 
 

@@ -10,18 +10,18 @@ import pytest
 from pydantic import BaseModel, Field
 
 from pliant.errors import ConfigError
-from pliant.live.desk import Desk, Wishes
-from pliant.live.fields import group_of, nested
-from pliant.live.form import parsed
-from pliant.live.mailbox import Mailbox
-from pliant.live.messages import Aim, Flow, PushNow, StepOnce
-from pliant.live.pace import Pace
-from pliant.live.steered_plant import SteeredPlant
-from pliant.live.world_form import SceneForm
+from pliant.live.link.mailbox import Mailbox
+from pliant.live.link.messages import Aim, Flow, PushNow, StepOnce
+from pliant.live.loop.pace import Pace
+from pliant.live.loop.requests import Desk, Wishes
+from pliant.live.loop.steered_plant import SteeredPlant
+from pliant.live.page.fields import group_of, nested
+from pliant.live.page.form import parsed
+from pliant.live.page.world_form import SceneForm
 from pliant.robot import Robot
 from pliant.signals import Command
 from pliant.simulation import Imperfections, MujocoPlant, Scene, Surface, floor
-from pliant.simulation.actuation import ActuationConfig
+from pliant.simulation.imperfections.actuation import ActuationConfig
 
 # ---------------------------------------------------------------------- mailbox
 

@@ -10,15 +10,15 @@ import pytest
 
 from pliant import loop
 from pliant.errors import PliantError
-from pliant.live.fields import Leaf, group_of, nested
-from pliant.live.messages import Aim, Flow, Message, Note, Parameters, PushNow
-from pliant.live.pace import Pace
-from pliant.live.session import Session
-from pliant.live.tuning import parameters_of
+from pliant.experiments.base import CaseConfig
+from pliant.experiments.config import merged
+from pliant.experiments.registry import get_study
+from pliant.live.link.messages import Aim, Flow, Message, Note, Parameters, PushNow
+from pliant.live.loop.pace import Pace
+from pliant.live.loop.session import Session
+from pliant.live.loop.tuning import parameters_of
+from pliant.live.page.fields import Leaf, group_of, nested
 from pliant.spatial import Array
-from pliant.studies.base import CaseConfig
-from pliant.studies.config import merged
-from pliant.studies.registry import get_study
 from pliant.telemetry.log import Log
 from pliant.telemetry.recorder import Recorder
 

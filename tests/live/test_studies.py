@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from pliant import loop
-from pliant.live.messages import Aim, Message, Note, Parameters, Ready
-from pliant.live.pace import Pace
-from pliant.live.session import Session
-from pliant.live.steered_source import TARGET_SPEED
-from pliant.live.tuning import online_fields, parameters_of
+from pliant.experiments.config import merged
+from pliant.experiments.registry import get_study, study_names
+from pliant.live.link.messages import Aim, Message, Note, Parameters, Ready
+from pliant.live.loop.pace import Pace
+from pliant.live.loop.session import Session
+from pliant.live.loop.steered_source import TARGET_SPEED
+from pliant.live.loop.tuning import online_fields, parameters_of
 from pliant.signals import Tick
-from pliant.studies.config import merged
-from pliant.studies.registry import get_study, study_names
 
 
 def steer(study_name: str, case: str, ticks: int, at: int, asks: Sequence[Any]) -> tuple[list[Tick], list[Message]]:

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, SignalError
+from pliant.experiments.config import merged
 from pliant.mpc import CONTROLLERS, Compensation, ForceFeedbackMpc, MpcController, OffsetFreeMpc
 from pliant.mpc.config import Bounds
 from pliant.signals import Environment, Estimate
-from pliant.studies.config import merged
 
 from .test_controller import ROBOT, _estimate, _reference
 

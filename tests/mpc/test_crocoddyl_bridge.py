@@ -21,7 +21,7 @@ from .problems import config, polishing_arm, posed, random_posture, randomise, s
 crocoddyl = pytest.importorskip("crocoddyl")
 mim_solvers = pytest.importorskip("mim_solvers")
 
-from pliant.mpc.crocoddyl_bridge import shooting_problem  # noqa: E402
+from pliant.mpc.crocoddyl.bridge import shooting_problem  # noqa: E402
 
 OFFSET = np.array([0.01, 0.01, 0.0])  # m
 REGULARISATION = 1e-9
@@ -155,6 +155,6 @@ def test_force_bounds_on_a_rigid_contact_are_refused() -> None:
 
 def test_without_the_extra_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "crocoddyl", None)
-    monkeypatch.delitem(sys.modules, "pliant.mpc.crocoddyl_bridge")
+    monkeypatch.delitem(sys.modules, "pliant.mpc.crocoddyl.bridge")
     with pytest.raises(MissingExtraError, match=r"pip install 'pliant\[crocoddyl\]'"):
-        importlib.import_module("pliant.mpc.crocoddyl_bridge")
+        importlib.import_module("pliant.mpc.crocoddyl.bridge")

@@ -9,9 +9,9 @@ import pytest
 
 from pliant import _mpc
 from pliant.mpc.chain import chain_from_robot
+from pliant.mpc.crocoddyl.node import PinocchioNode
 from pliant.mpc.kernel import kernel_model
 from pliant.mpc.nodes import copy_nodes
-from pliant.mpc.pinocchio_node import PinocchioNode
 from pliant.mpc.problem import problem_from_robot
 from pliant.robot import Robot
 

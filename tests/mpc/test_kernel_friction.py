@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from pliant import _mpc
+from pliant.experiments.config import merged
 from pliant.mpc.benchmark import BenchCase, NoisyLoop
 from pliant.mpc.config import ForceFeedbackMpc
 from pliant.mpc.registry import CONTROLLERS
 from pliant.robot import Robot, Tool
-from pliant.studies.config import merged
 from tests.twins.mpc_robots import catalogue_chain, random_chain
 from tests.twins.mpc_twin import AXES, Twin, node_and_twin, random_point
 

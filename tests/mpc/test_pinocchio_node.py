@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 from pliant.errors import ConfigError
-from pliant.mpc.pinocchio_node import PinocchioNode
+from pliant.mpc.crocoddyl.node import PinocchioNode
 from pliant.mpc.problem import MpcProblem, problem_from_model, problem_from_robot
 from pliant.spatial import Array
 

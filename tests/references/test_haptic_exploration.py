@@ -11,12 +11,12 @@ import pytest
 from pydantic import ValidationError
 
 from pliant.errors import ConfigError, PliantError, SignalError
-from pliant.references.contact_normal import angle_between, turned_normal, within_cone
-from pliant.references.exploration_axis import AxisPhase
-from pliant.references.exploration_config import ExplorationConfig
-from pliant.references.haptic_exploration import CHANNELS, HapticExploration
+from pliant.references.exploration.axis import AxisPhase
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.contact_normal import angle_between, turned_normal, within_cone
+from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
+from pliant.references.exploration.sliding_span import SlidingSpan
 from pliant.references.schedule import Mailbox
-from pliant.references.sliding_span import SlidingSpan
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import exp3, log3
 

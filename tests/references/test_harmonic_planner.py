@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from pliant.errors import ConfigError, SignalError
-from pliant.references.attractor_planner import AttractorPlanner
-from pliant.references.harmonic_attractor import AttractorSettings
-from pliant.references.harmonic_planner import HarmonicPlanner, PlannerLimits
+from pliant.references.planners.attractor_planner import AttractorPlanner
+from pliant.references.planners.harmonic_attractor import AttractorSettings
+from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
+from pliant.references.planners.superposition import MotionLimits
+from pliant.references.planners.workspace import Workspace, workspace_of
 from pliant.references.schedule import Mailbox, Schedule
-from pliant.references.superposition import MotionLimits
-from pliant.references.workspace import Workspace, workspace_of
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import exp3, log3

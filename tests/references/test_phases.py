@@ -7,9 +7,9 @@ import pytest
 
 from pliant.errors import ConfigError
 from pliant.references.phases import Lookahead, PhasedSource, PhaseState, TaskPhase
-from pliant.references.shapes import circle
-from pliant.references.steps import Waypoints, wrench_steps
-from pliant.references.trajectory import Hold
+from pliant.references.trajectories.shapes import circle
+from pliant.references.trajectories.trajectory import Hold
+from pliant.references.trajectories.waypoints import Waypoints, wrench_steps
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference
 

@@ -7,12 +7,12 @@ import pinocchio as pin
 import pytest
 
 from pliant.errors import ConfigError, RobotError
-from pliant.references.inverse_kinematics import Target, joint_box
-from pliant.references.posture import METHODS, PostureOptions, UnreachableError, solve_posture
-from pliant.references.posture_source import PostureSource, posture_source
-from pliant.references.shapes import lemniscate, sine_line
+from pliant.references.postures.inverse_kinematics import Target, joint_box
+from pliant.references.postures.posture import METHODS, PostureOptions, UnreachableError, solve_posture
+from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.source import FrameMotion
-from pliant.references.trajectory import Hold
+from pliant.references.trajectories.shapes import lemniscate, sine_line
+from pliant.references.trajectories.trajectory import Hold
 from pliant.robot import Robot
 from pliant.signals import Estimate
 from pliant.spatial import frame_with_z_along, log3

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from pliant.errors import ConfigError, OutputError, ShapeError
-from pliant.references.rotation import Fixed, QuaternionSpline
-from pliant.references.sampled import read_motion
-from pliant.references.shapes import lemniscate
 from pliant.references.source import FrameMotion, TrajectorySource
-from pliant.references.steps import wrench_steps
-from pliant.references.trajectory import Hold
+from pliant.references.trajectories.rotation import Fixed, QuaternionSpline
+from pliant.references.trajectories.sampled import read_motion
+from pliant.references.trajectories.shapes import lemniscate
+from pliant.references.trajectories.trajectory import Hold
+from pliant.references.trajectories.waypoints import wrench_steps
 from pliant.signals import Estimate
 from pliant.spatial import exp3, frame_with_z_along, log3
 

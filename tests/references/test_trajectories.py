@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, PliantError
-from pliant.references.shapes import circle, lemniscate, sine_line
-from pliant.references.spline import Spline
-from pliant.references.steps import Waypoints, wrench_steps
-from pliant.references.trajectory import Blend, Chain, Hold, Sum, Trajectory, Warped
-from pliant.references.warp import EaseIn, Scale
+from pliant.references.trajectories.shapes import circle, lemniscate, sine_line
+from pliant.references.trajectories.spline import Spline
+from pliant.references.trajectories.time_scaling import EaseIn, Scale
+from pliant.references.trajectories.trajectory import Blend, Chain, Hold, Sum, Trajectory, Warped
+from pliant.references.trajectories.waypoints import Waypoints, wrench_steps
 
 H = 1e-5  # s
 

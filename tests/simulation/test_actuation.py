@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pliant.simulation.actuation import Actuation, ActuationConfig
+from pliant.simulation.imperfections.actuation import Actuation, ActuationConfig
 
 DT = 1e-3  # s
 N = 3

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pliant.simulation import Ball, Box, Scene, Surface, floor
-from pliant.simulation.contact_pairs import pairs_of
+from pliant.simulation.contact.pairs import pairs_of
 
 SOFT, HARD = Surface(1e3), Surface(1e6)
 GROUND = floor(0.0, Surface(1e4))

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError
-from pliant.simulation.delay import Delay, whole_periods
+from pliant.simulation.imperfections.delay import Delay, whole_periods
 
 
 @given(periods=st.integers(0, 20), length=st.integers(1, 60))

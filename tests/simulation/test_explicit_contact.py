@@ -22,14 +22,14 @@ from pliant.simulation import (
     Surface,
     floor,
 )
-from pliant.simulation.contact_material import ContactMaterial
-from pliant.simulation.contact_pairs import pairs_of
-from pliant.simulation.explicit_contact import (
+from pliant.simulation.contact.explicit import (
     ContactPair,
     ContactState,
     ExplicitContacts,
     explicit_contacts,
 )
+from pliant.simulation.contact.material import ContactMaterial
+from pliant.simulation.contact.pairs import pairs_of
 
 G = 9.81  # m/s²
 RIGID = Surface(stiffness=1e6, damping=1e4, friction=0.5, friction_moving=0.3)

@@ -11,13 +11,13 @@ from pydantic import BaseModel
 from pliant.errors import ConfigError
 from pliant.interfaces import Plant
 from pliant.signals import Command, Measurement
-from pliant.simulation.actuation import ActuationConfig
-from pliant.simulation.imperfect import ImperfectPlant
-from pliant.simulation.imperfections import Imperfections
-from pliant.simulation.low_level import TorqueLoopConfig
+from pliant.simulation.imperfections.actuation import ActuationConfig
+from pliant.simulation.imperfections.config import Imperfections
+from pliant.simulation.imperfections.plant import ImperfectPlant
+from pliant.simulation.imperfections.ripple import RippleConfig
+from pliant.simulation.imperfections.sensing import SensingConfig
+from pliant.simulation.imperfections.torque_loop import TorqueLoopConfig
 from pliant.simulation.plant import JointEffects
-from pliant.simulation.ripple import RippleConfig
-from pliant.simulation.sensing import SensingConfig
 
 N = 6
 

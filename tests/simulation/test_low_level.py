@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pliant.simulation.actuation import Actuation, ActuationConfig
-from pliant.simulation.low_level import TorqueLoop, TorqueLoopConfig
+from pliant.simulation.imperfections.actuation import Actuation, ActuationConfig
+from pliant.simulation.imperfections.torque_loop import TorqueLoop, TorqueLoopConfig
 
 DT = 1e-3  # s
 NO_LIMIT = np.full(2, np.inf)

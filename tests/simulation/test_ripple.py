@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pliant.simulation.ripple import Ripple, RippleConfig
+from pliant.simulation.imperfections.ripple import Ripple, RippleConfig
 
 DT = 1e-3  # s
 CONFIG = RippleConfig(amplitude=2.0, frequency=35.0, speed=0.35, force=50.0)

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.signals import Measurement
-from pliant.simulation.sensing import Sensing, SensingConfig
+from pliant.simulation.imperfections.sensing import Sensing, SensingConfig
 
 N = 3
 PERIOD = 1e-3  # s

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from pliant.studies.base import Result
-from pliant.studies.config import merged
+from pliant.experiments.base import Result
+from pliant.experiments.config import merged
+from pliant.experiments.runner import run_case
 from pliant.studies.haptic import STUDY
 from pliant.studies.haptic.config import Check, HapticConfig, OnlineChanges, Planner, Step
-from pliant.studies.runner import run_case
 
 pytestmark = pytest.mark.study
 

@@ -9,8 +9,8 @@ import pytest
 
 from pliant import loop
 from pliant.errors import ConfigError
+from pliant.experiments.config import merged
 from pliant.spatial import Array
-from pliant.studies.config import merged
 from pliant.studies.haptic import STUDY
 from pliant.studies.haptic.config import HapticConfig, Step
 from pliant.studies.haptic.draws import drawn

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pliant.studies.base import Result
+from pliant.experiments.base import Result
 from pliant.studies.haptic import STUDY, benchmark
 from pliant.studies.haptic.delays import DELAYS, PLACES, SURFACES, largest_stable
 from pliant.studies.haptic.parameters import PARAMETERS

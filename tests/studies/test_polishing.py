@@ -9,12 +9,12 @@ import pytest
 
 from pliant import loop
 from pliant.errors import ConfigError
+from pliant.experiments.config import merged
+from pliant.experiments.runner import run_case
 from pliant.signals import Tick
-from pliant.simulation.imperfections import Imperfections
-from pliant.studies.config import merged
+from pliant.simulation.imperfections.config import Imperfections
 from pliant.studies.polishing import STUDY
 from pliant.studies.polishing.config import PolishingConfig
-from pliant.studies.runner import run_case
 from pliant.telemetry.summary import Metric
 
 pytestmark = pytest.mark.study

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from pliant.errors import ConfigError
+from pliant.experiments.base import Result
+from pliant.experiments.config import merged
+from pliant.experiments.runner import run_case
 from pliant.simulation import Imperfections
-from pliant.studies.base import Result
-from pliant.studies.config import merged
 from pliant.studies.polishing import STUDY
 from pliant.studies.polishing.cases import ALL, CASES, TILTS
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.paper import STOCK
 from pliant.studies.polishing.tables import report
-from pliant.studies.runner import run_case
 from pliant.telemetry.summary import Metric
 
 DRAWS = ((0.1, 900), (0.1, 901), (-0.1, 902), (-0.1, 903))  # tilt in rad, seed: 2 tilts × 2 seeds

@@ -13,9 +13,9 @@ import pytest
 
 from pliant.cli.study import resume_command
 from pliant.errors import PliantError
-from pliant.studies import parquet
-from pliant.studies.results import FILE, Request, ResultStore, read_results
-from pliant.studies.sweep import asked_runs, sweep
+from pliant.experiments import parquet
+from pliant.experiments.results import FILE, Request, ResultStore, read_results
+from pliant.experiments.sweep import asked_runs, sweep
 from tests.studies import toy
 
 REQUEST = Request("toy", ("fine", "physics"), 2, ("gains.a=0.3",))

@@ -10,9 +10,9 @@ import pytest
 
 from pliant import loop
 from pliant.errors import ConfigError
-from pliant.references.posture import UnreachableError
+from pliant.experiments.config import merged
+from pliant.references.postures.posture import UnreachableError
 from pliant.robot import Robot
-from pliant.studies.config import merged
 from pliant.studies.stack import STUDY
 from pliant.studies.stack.build import build
 from pliant.studies.stack.config import CASES, StackConfig

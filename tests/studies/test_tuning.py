@@ -9,9 +9,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from pliant.errors import ConfigError
-from pliant.studies.registry import get_study
-from pliant.studies.search import search
-from pliant.studies.tuning import PENALTY, Range, Tuning, find_tuning, nested
+from pliant.experiments.registry import get_study
+from pliant.experiments.search import search
+from pliant.experiments.tuning import PENALTY, Range, Tuning, find_tuning, nested
 from tests.studies import toy
 from tests.studies.commands import study
 

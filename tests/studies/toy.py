@@ -13,13 +13,13 @@ from typing import Literal
 import numpy as np
 
 from pliant.errors import RunFailedError
+from pliant.experiments import registry
+from pliant.experiments.base import CaseConfig, Experiment, Result, Study
+from pliant.experiments.config import Config
+from pliant.experiments.tuning import Range, Tuning
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Measurement, Reference
-from pliant.studies import registry
-from pliant.studies.base import CaseConfig, Experiment, Result, Study
-from pliant.studies.config import Config
-from pliant.studies.tuning import Range, Tuning
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 

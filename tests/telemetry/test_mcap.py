@@ -16,7 +16,7 @@ from rosbags.highlevel import AnyReader
 
 from pliant.signals import Tick
 from pliant.telemetry import Log, Recorder, RunInfo
-from pliant.telemetry.messages import DEFINITIONS, encode, message, template
+from pliant.telemetry.mcap.messages import DEFINITIONS, encode, message, template
 from tests.telemetry.ticks import JOINTS, make_tick
 
 TICKS = 700  # more than one block

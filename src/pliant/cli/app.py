@@ -122,7 +122,7 @@ def study(
 ) -> None:
     """Runs a whole study, control arms included: the tables and figures of a paper, beside the paper's numbers."""
     from pliant.cli.study import resume_command, study_command
-    from pliant.studies.results import Request
+    from pliant.experiments.results import Request
 
     rest = {"--case": case, "--seeds": seeds, "--logs": logs}
     if tune is not None:

@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.table import Table
 
 from pliant.errors import ConfigError, options
+from pliant.experiments.registry import get_study, study_names
 from pliant.robots import CATALOGUE, is_available
-from pliant.studies.registry import get_study, study_names
 
 
 def list_command(console: Console, what: str | None) -> None:

@@ -33,11 +33,11 @@ def live_command(
     """
     require_viser()
     if target.endswith(".mcap"):
-        from pliant.live.replay import serve_replay
+        from pliant.live.page.replay import serve_replay
 
         serve_replay(Path(target), host, port, lambda server: announce(console, complain, server.url, server.guarded))
         return
-    from pliant.live.launch import serve_live
+    from pliant.live.server.launch import serve_live
 
     study, config = resolve(target, case, overrides, assignments)
     folder = out or Path("pliant-out") / "live"

@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.console import Console
 
-from pliant.studies.base import Result, Study
+from pliant.experiments.base import Result, Study
 from pliant.telemetry.summary import Case, Summary, over_runs
 from pliant.telemetry.table import summary_table
 

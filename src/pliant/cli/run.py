@@ -12,10 +12,10 @@ from rich.console import Console
 from pliant.cli.progress import progress_bar
 from pliant.cli.report import print_results, save_summary
 from pliant.errors import ConfigError, RunFailedError, options
-from pliant.studies.base import CaseConfig, Experiment, Study
-from pliant.studies.config import merged, parse_assignments, read_toml
-from pliant.studies.registry import get_study, study_names
-from pliant.studies.runner import run_case
+from pliant.experiments.base import CaseConfig, Experiment, Study
+from pliant.experiments.config import merged, parse_assignments, read_toml
+from pliant.experiments.registry import get_study, study_names
+from pliant.experiments.runner import run_case
 from pliant.telemetry.output import output_folder
 
 
@@ -71,7 +71,7 @@ def _page(
     from pliant.cli.live import DEFAULT_HOST, announce, require_viser
 
     require_viser()
-    from pliant.live.beside import beside
+    from pliant.live.server.beside import beside
 
     def tell(url: str, guarded: bool) -> None:
         announce(console, complain, url, guarded)

@@ -15,13 +15,13 @@ from rich.table import Table
 
 from pliant import __version__
 from pliant.cli.progress import count_bar
-from pliant.studies.config import merged, parse_assignments
-from pliant.studies.parquet import write_parquet
-from pliant.studies.pool import open_pool
-from pliant.studies.registry import get_study
-from pliant.studies.search import Trial, require_optuna, search
-from pliant.studies.sweep import check_buildable
-from pliant.studies.tuning import PENALTY, Tuning, find_tuning
+from pliant.experiments.config import merged, parse_assignments
+from pliant.experiments.parquet import write_parquet
+from pliant.experiments.pool import open_pool
+from pliant.experiments.registry import get_study
+from pliant.experiments.search import Trial, require_optuna, search
+from pliant.experiments.sweep import check_buildable
+from pliant.experiments.tuning import PENALTY, Tuning, find_tuning
 from pliant.telemetry.output import output_folder, write_text
 from pliant.telemetry.table import number
 

@@ -203,7 +203,7 @@ def _bridge(case: BenchCase, solves: int) -> dict[str, Any]:
     try:
         from mim_solvers import SolverSQP
 
-        from pliant.mpc.crocoddyl_bridge import shooting_problem
+        from pliant.mpc.crocoddyl.bridge import shooting_problem
     except (ImportError, MissingExtraError):
         return {"missing": "pip install 'pliant[crocoddyl]'"}
     loop = NoisyLoop(case)

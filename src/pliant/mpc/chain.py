@@ -13,7 +13,7 @@ from pliant.robot import Robot
 from pliant.spatial import Array
 
 _JointKind = Literal["revolute", "prismatic"]
-_BRIDGE = "use the crocoddyl bridge (pliant.mpc.crocoddyl_bridge)"
+_BRIDGE = "use the crocoddyl bridge (pliant.mpc.crocoddyl.bridge)"
 
 
 def chain_from_robot(robot: Robot, frame: str, contact_frame: str | None = None) -> _mpc.Chain:

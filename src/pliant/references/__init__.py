@@ -1,20 +1,20 @@
 """Where the robot should be and how hard it should press: trajectories, planners, posture, haptic exploration.
 
-Postures are in `pliant.references.posture_source`; they need MuJoCo and mink, which take a moment to import.
+Postures are in `pliant.references.postures.posture_source`; they need MuJoCo and mink, which take a moment to import.
 """
 
-from pliant.references.attractor_planner import AttractorPlanner
-from pliant.references.exploration_config import ExplorationConfig
-from pliant.references.haptic_exploration import HapticExploration
-from pliant.references.harmonic_planner import HarmonicPlanner, PlannerLimits
-from pliant.references.sampled import read_motion
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.haptic_exploration import HapticExploration
+from pliant.references.planners.attractor_planner import AttractorPlanner
+from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
+from pliant.references.planners.superposition import MotionLimits
+from pliant.references.planners.workspace import Workspace, workspace_of
 from pliant.references.schedule import Mailbox, Schedule
-from pliant.references.shapes import Harmonics, circle, lemniscate, sine_line
 from pliant.references.source import FrameMotion, TrajectorySource
-from pliant.references.steps import Waypoints, wrench_steps
-from pliant.references.superposition import MotionLimits
-from pliant.references.trajectory import Blend, Chain, Hold, Trajectory, Warped
-from pliant.references.workspace import Workspace, workspace_of
+from pliant.references.trajectories.sampled import read_motion
+from pliant.references.trajectories.shapes import Harmonics, circle, lemniscate, sine_line
+from pliant.references.trajectories.trajectory import Blend, Chain, Hold, Trajectory, Warped
+from pliant.references.trajectories.waypoints import Waypoints, wrench_steps
 
 __all__ = [
     "AttractorPlanner",

@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.interfaces import ReferenceSource
-from pliant.references.trajectory import Trajectory
+from pliant.references.trajectories.trajectory import Trajectory
 from pliant.robot import Robot
 from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array

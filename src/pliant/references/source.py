@@ -10,9 +10,9 @@ import numpy as np
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.interfaces import ReferenceSource
-from pliant.references.rotation import Fixed, Turning, WarpedTurning
-from pliant.references.trajectory import Trajectory, Warped, vector
-from pliant.references.warp import EaseIn
+from pliant.references.trajectories.rotation import Fixed, Turning, WarpedTurning
+from pliant.references.trajectories.time_scaling import EaseIn
+from pliant.references.trajectories.trajectory import Trajectory, Warped, vector
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import Array
 

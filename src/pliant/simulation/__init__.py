@@ -2,8 +2,8 @@
 
 from pliant.simulation.disturbances import Push, random_pushes
 from pliant.simulation.force_sensor import ForceSensor
-from pliant.simulation.imperfect import ImperfectPlant, ImperfectWorld
-from pliant.simulation.imperfections import Imperfections
+from pliant.simulation.imperfections.config import Imperfections
+from pliant.simulation.imperfections.plant import ImperfectPlant, ImperfectWorld
 from pliant.simulation.joint_effects import JointEffects
 from pliant.simulation.link_capsule import LinkCapsule
 from pliant.simulation.plant import MujocoPlant, World

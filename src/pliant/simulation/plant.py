@@ -14,10 +14,10 @@ from pliant.interfaces import Plant
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
 from pliant.signals import Command, Measurement, Truth
-from pliant.simulation.contact_pairs import PairOfGeoms, pairs_of
-from pliant.simulation.contact_recipe import add_pair, apply_surface
+from pliant.simulation.contact.explicit import ContactState, ExplicitContacts, explicit_contacts
+from pliant.simulation.contact.pairs import PairOfGeoms, pairs_of
+from pliant.simulation.contact.recipe import add_pair, apply_surface
 from pliant.simulation.disturbances import Push
-from pliant.simulation.explicit_contact import ContactState, ExplicitContacts, explicit_contacts
 from pliant.simulation.force_sensor import ForceSensor
 from pliant.simulation.joint_effects import JointEffects
 from pliant.simulation.link_capsule import LinkCapsule

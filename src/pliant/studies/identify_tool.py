@@ -10,12 +10,12 @@ from pydantic import Field
 from pliant import loop
 from pliant.errors import RobotError, RunFailedError, options
 from pliant.estimation import DirectEstimator, ToolIdentification, identification_poses, identify_tool
+from pliant.experiments.config import Config
 from pliant.interfaces import Controller, Estimator, Plant
-from pliant.references.posture_tour import PostureTour
+from pliant.references.postures.posture_tour import PostureTour
 from pliant.robot import Robot
 from pliant.signals import Tick
 from pliant.spatial import Array
-from pliant.studies.config import Config
 
 
 class IdentifyToolConfig(Config):

@@ -15,8 +15,8 @@ import numpy.typing as npt
 from pliant.errors import ConfigError, OutputError, options
 from pliant.spatial import Array
 from pliant.telemetry.info import RunInfo
-from pliant.telemetry.mcap_read import Contents, read
-from pliant.telemetry.topics import FIELDS, PREFIX
+from pliant.telemetry.mcap.reader import Contents, read
+from pliant.telemetry.mcap.topics import FIELDS, PREFIX
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,8 @@ import numpy as np
 from pliant.signals import Tick
 from pliant.spatial import Array
 from pliant.telemetry.info import RunInfo
+from pliant.telemetry.mcap.topics import Topic, is_rotation, logged, quaternions, topics
 from pliant.telemetry.schema import Channel, Group, groups
-from pliant.telemetry.topics import Topic, is_rotation, logged, quaternions, topics
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,11 @@ from pliant.errors import ConfigError, OutputError, ShapeError
 from pliant.signals import Tick
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import Log
-from pliant.telemetry.mcap_file import McapFile
+from pliant.telemetry.mcap.topics import PREFIX, units_of
+from pliant.telemetry.mcap.writer import McapFile
 from pliant.telemetry.plan import Block, Plan
 from pliant.telemetry.schema import Channel, signature
 from pliant.telemetry.timing import Timing
-from pliant.telemetry.topics import PREFIX, units_of
 
 _BLOCK = 512  # ticks per block: what a killed process loses at most, and one chunk of the file
 _WAITING = 4  # full blocks in memory before the loop waits for the file

@@ -12,19 +12,19 @@ from pliant.controllers.stack import Stack
 from pliant.controllers.task import FrameTask
 from pliant.errors import ConfigError
 from pliant.estimation import WrenchEstimator
+from pliant.experiments.base import Experiment
 from pliant.interfaces import Plant, ReferenceSource
-from pliant.references.attractor_planner import AttractorPlanner
-from pliant.references.exploration_config import ExplorationConfig
-from pliant.references.haptic_exploration import CHANNELS, HapticExploration
-from pliant.references.harmonic_attractor import AttractorSettings
-from pliant.references.harmonic_planner import HarmonicPlanner, PlannerLimits
-from pliant.references.superposition import MotionLimits
-from pliant.references.workspace import workspace_of
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
+from pliant.references.planners.attractor_planner import AttractorPlanner
+from pliant.references.planners.harmonic_attractor import AttractorSettings
+from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
+from pliant.references.planners.superposition import MotionLimits
+from pliant.references.planners.workspace import workspace_of
 from pliant.robot import Robot
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, LinkCapsule, MujocoPlant
-from pliant.simulation.actuation import ActuationConfig
-from pliant.simulation.sensing import SensingConfig
-from pliant.studies.base import Experiment
+from pliant.simulation.imperfections.actuation import ActuationConfig
+from pliant.simulation.imperfections.sensing import SensingConfig
 from pliant.studies.haptic.config import HapticConfig, Planner
 from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import warnings_of

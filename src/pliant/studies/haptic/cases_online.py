@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pliant.references.exploration_config import ExplorationConfig
+from pliant.references.exploration.config import ExplorationConfig
 from pliant.studies.haptic.config import (
     Check,
     Environment,

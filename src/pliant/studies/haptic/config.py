@@ -16,10 +16,10 @@ from pydantic import Field, field_validator, model_validator
 from pliant.controllers.attractor import Law
 from pliant.controllers.profiles import Shape
 from pliant.errors import PliantError, options
-from pliant.references.exploration_config import ExplorationConfig
+from pliant.experiments.base import CaseConfig
+from pliant.experiments.config import Config
+from pliant.references.exploration.config import ExplorationConfig
 from pliant.signals import ImpedanceTuning
-from pliant.studies.base import CaseConfig
-from pliant.studies.config import Config
 
 CONTROLLERS = ("haptic", "haptic-paper", "haptic-hold")
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from pliant.studies.base import Result
-from pliant.studies.config import merged
+from pliant.experiments.base import Result
+from pliant.experiments.config import merged
 from pliant.studies.haptic.config import HapticConfig, Material
 from pliant.telemetry.plots import style
 

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from pliant.experiments.base import Experiment, Result
+from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
-from pliant.studies.base import Experiment, Result
 from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.delays import delay_figure
 from pliant.studies.haptic.measure import Signals
 from pliant.studies.haptic.parameters import parameter_figure
-from pliant.studies.runner import file_stem
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, style, time_series
 

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from pliant.studies.base import Result
-from pliant.studies.config import merged, parse_assignments
+from pliant.experiments.base import Result
+from pliant.experiments.config import merged, parse_assignments
 from pliant.studies.haptic.config import HapticConfig, Material
 from pliant.telemetry.plots import style
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from pliant.controllers.advice import advise, sentences, smallest_inertia
-from pliant.references.workspace import Workspace, workspace_of
+from pliant.references.planners.workspace import Workspace, workspace_of
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array

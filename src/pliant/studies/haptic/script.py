@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pliant.references.exploration_config import ExplorationConfig
+from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.schedule import Schedule
 from pliant.signals import ImpedanceTuning, Reference, TaskReference
 from pliant.studies.haptic.config import HapticConfig, Step

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from pliant.studies.base import Experiment, Result, Study
+from pliant.experiments.base import Experiment, Result, Study
 from pliant.studies.haptic import draw
 from pliant.studies.haptic.build import build
 from pliant.studies.haptic.cases import CASES

@@ -18,16 +18,16 @@ from pliant.estimation import (
     MomentumObserver,
     WrenchEstimator,
 )
+from pliant.experiments.base import Experiment
 from pliant.interfaces import Controller, Estimator, Plant
 from pliant.mpc import MpcConfig, MpcController
-from pliant.references.ik_mink import MinkSolver
-from pliant.references.inverse_kinematics import Target, joint_box
 from pliant.references.phases import Lookahead
+from pliant.references.postures.ik_mink import MinkSolver
+from pliant.references.postures.inverse_kinematics import Target, joint_box
 from pliant.robot import Robot, Tool
 from pliant.simulation import ForceSensor, ImperfectPlant, MujocoPlant, Push, Scene, Surface, table
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
-from pliant.studies.base import Experiment
 from pliant.studies.polishing.config import BALL_RADIUS, FRAME, PolishingConfig, Pushes
 from pliant.studies.polishing.source import TURNED_DOWN, polishing_source, touching_point
 from pliant.telemetry.schema import Channel

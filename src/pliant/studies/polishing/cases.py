@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+from pliant.experiments.config import merged
 from pliant.mpc.config import OffsetFreeMpc
 from pliant.simulation import Imperfections
-from pliant.studies.config import merged
 from pliant.studies.polishing.config import PolishingConfig, Pushes
 from pliant.studies.polishing.paper import STOCK
 from pliant.studies.polishing.targets import BEST

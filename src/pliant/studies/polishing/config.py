@@ -11,10 +11,10 @@ from typing import Any, Literal
 from pydantic import Field
 
 from pliant.entries import ControllerEntry, find_entry
+from pliant.experiments.base import CaseConfig
+from pliant.experiments.config import Config, merged
 from pliant.mpc import CONTROLLERS, MpcConfig
 from pliant.simulation import Imperfections
-from pliant.studies.base import CaseConfig
-from pliant.studies.config import Config, merged
 from pliant.studies.polishing.tuned import PRESETS
 
 FRAME = "tool"

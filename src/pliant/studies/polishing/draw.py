@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from pliant.experiments.base import Experiment
+from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
-from pliant.studies.base import Experiment
 from pliant.studies.polishing.config import FRAME, PolishingConfig
-from pliant.studies.runner import file_stem
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, style, time_series
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from pliant.experiments.base import Result
 from pliant.spatial import Array
-from pliant.studies.base import Result
 from pliant.studies.polishing.cases import ALL
 from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.studies.polishing.targets import targets_of

@@ -9,9 +9,9 @@ import numpy as np
 
 from pliant.errors import ConfigError
 from pliant.references.phases import Lookahead, PhasedSource, TaskPhase
-from pliant.references.shapes import circle
-from pliant.references.steps import Waypoints, wrench_steps
-from pliant.references.trajectory import Hold
+from pliant.references.trajectories.shapes import circle
+from pliant.references.trajectories.trajectory import Hold
+from pliant.references.trajectories.waypoints import Waypoints, wrench_steps
 from pliant.robot import Robot
 from pliant.spatial import Array, rpy
 from pliant.studies.polishing.config import BALL_RADIUS, FRAME, PolishingConfig

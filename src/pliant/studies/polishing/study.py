@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from pliant.experiments.base import Experiment, Result, Study
+from pliant.experiments.tuning import Tuning
 from pliant.mpc import CONTROLLERS
-from pliant.studies.base import Experiment, Result, Study
 from pliant.studies.polishing import draw, overview, tables
 from pliant.studies.polishing.build import build
 from pliant.studies.polishing.cases import CASES, runs_of
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.measure import WORST, measure
 from pliant.studies.polishing.tuning import tuning_of
-from pliant.studies.tuning import Tuning
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pliant.studies.base import Result
+from pliant.experiments.base import Result
 from pliant.studies.polishing.measure import WORST
 from pliant.studies.polishing.paper import DIFFERENCE, STOCK
 from pliant.telemetry.summary import Metric, over_runs

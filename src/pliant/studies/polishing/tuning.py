@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from pliant.experiments.base import Result
+from pliant.experiments.config import merged
+from pliant.experiments.tuning import Range, Tuning
 from pliant.mpc.costs import Term
 from pliant.simulation import Imperfections
-from pliant.studies.base import Result
-from pliant.studies.config import merged
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.targets import BEST
-from pliant.studies.tuning import Range, Tuning
 
 _FIRST_SEED = 1000  # far from those of the tables
 _DURATION = 5.0  # s, of which 2 s on the circle

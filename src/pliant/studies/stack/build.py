@@ -9,17 +9,17 @@ from pliant.controllers.profiles import linear_range
 from pliant.controllers.step_limit import StepLimit
 from pliant.errors import ConfigError
 from pliant.estimation import DirectEstimator
-from pliant.references.posture import PostureOptions
-from pliant.references.posture_source import PostureSource, posture_source
+from pliant.experiments.base import Experiment
+from pliant.references.postures.posture import PostureOptions
+from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.retuned import Retuned, TuningChange
-from pliant.references.shapes import lemniscate, sine_line
 from pliant.references.source import FrameMotion
-from pliant.references.trajectory import Hold
+from pliant.references.trajectories.shapes import lemniscate, sine_line
+from pliant.references.trajectories.trajectory import Hold
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import JointEffects, MujocoPlant, Push, Scene, Surface, random_pushes, wall
 from pliant.spatial import frame_with_z_along
-from pliant.studies.base import Experiment
 from pliant.studies.stack.config import Path, StackConfig
 from pliant.telemetry.schema import Channel
 

@@ -17,8 +17,8 @@ from pliant.controllers.presets import SOFT_STACK, STIFF_STACK, TABLE_I_ROBOT, T
 from pliant.controllers.registry import CONTROLLERS
 from pliant.entries import ControllerConfig, ControllerEntry, find_entry
 from pliant.errors import ConfigError
-from pliant.studies.base import CaseConfig
-from pliant.studies.config import Config, merged
+from pliant.experiments.base import CaseConfig
+from pliant.experiments.config import Config, merged
 
 PathKind = Literal["figure8", "line", "stretch", "hold"]
 

@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 
 from pliant.controllers.attractor import Attractor, Law
 from pliant.controllers.profiles import ForceProfile
+from pliant.experiments.base import Experiment, Result
+from pliant.experiments.runner import file_stem
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import MujocoPlant
 from pliant.simulation.snapshot import Camera, Path3, Snapshot, render
 from pliant.spatial import Array
-from pliant.studies.base import Experiment, Result
-from pliant.studies.runner import file_stem
 from pliant.studies.stack.config import StackConfig
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import (

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pliant.controllers.registry import CONTROLLERS
+from pliant.experiments.base import Experiment, Result, Study
+from pliant.experiments.config import merged
 from pliant.robot import Robot
-from pliant.studies.base import Experiment, Result, Study
-from pliant.studies.config import merged
 from pliant.studies.stack import draw
 from pliant.studies.stack.build import build
 from pliant.studies.stack.config import CASES, StackConfig

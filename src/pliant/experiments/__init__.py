@@ -1,0 +1,1 @@
+"""The engine: runs, sweeps, results, searches, for any study."""

@@ -1,0 +1,127 @@
+"""What a study is: typed cases, a way to build each, metrics from its log, and figures."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from pydantic import Field
+
+from pliant.errors import ConfigError, options
+from pliant.experiments.config import Config
+from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
+from pliant.robot import Robot
+from pliant.telemetry.log import Log
+from pliant.telemetry.schema import Channel
+from pliant.telemetry.summary import Metric
+
+if TYPE_CHECKING:
+    from pliant.experiments.tuning import Tuning
+
+
+class CaseConfig(Config):
+    """What every case of every study has."""
+
+    case: str = Field(description="name of the case")
+    controller: str = Field(description="name of the controller")
+    robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
+    seed: int = Field(default=0, ge=0, description="of every random draw")
+    duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    variant: str = Field(
+        default="", description="what distinguishes this run from others of the same case and controller"
+    )
+
+
+C = TypeVar("C", bound=CaseConfig)
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A wired loop, ready to run."""
+
+    robot: Robot
+    plant: Plant[Any]
+    estimator: Estimator[Any]
+    source: ReferenceSource[Any]
+    controller: Controller[Any]
+    channels: tuple[Channel, ...] = ()
+    """units of what the controller and the source report"""
+    warnings: tuple[str, ...] = ()
+    """what is unsafe about the parameters, in sentences"""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came out of one run."""
+
+    config: CaseConfig
+    metrics: tuple[Metric, ...]
+    failure: str | None = None
+    """why it stopped early; None if it ran to its end"""
+    warnings: tuple[str, ...] = ()
+    log: Path | None = None
+    figures: tuple[Path, ...] = field(default=())
+
+
+class Study(ABC, Generic[C]):
+    """A family of cases that are built, measured and drawn the same way."""
+
+    name: str
+    title: str
+    """one line, for people"""
+    cases: Mapping[str, C]
+    """name → its configuration; the first is the default"""
+    controllers: Sequence[str]
+    """names that `controller` can take"""
+    worst: Collection[str] = ()
+    """names of metrics that the worst run of a row decides; of the others it shows the mean"""
+
+    def case(self, name: str) -> C:
+        """Configuration of a case. Raises ConfigError, with the cases there are, if it does not exist."""
+        if name not in self.cases:
+            raise ConfigError(f"study {self.name!r} has no case {name!r}; {options(self.cases, name)}")
+        return self.cases[name]
+
+    def runs(self, case: str, seeds: int | None = None) -> Sequence[C]:
+        """Every run of a case in the full study: control arms, variants and seeds.
+
+        Args:
+            case: name of the case.
+            seeds: how many, where draws are random; None: as many as the study deems enough.
+        """
+        return [self.case(case)]
+
+    def shows(self, config: C) -> bool:
+        """Whether a run of the full study keeps its log and is drawn; the others leave their metrics only."""
+        return config.seed == 0 and not config.variant
+
+    @abstractmethod
+    def build(self, config: C) -> Experiment:
+        """Wires the loop of a case."""
+
+    @abstractmethod
+    def metrics(self, config: C, log: Log) -> tuple[Metric, ...]:
+        """Measures a run; the paper's number and the target stand beside where there is one."""
+
+    def verdict(self, config: C, metrics: Sequence[Metric]) -> str | None:
+        """Why a run that reached its end counts as failed all the same; None if it does not."""
+        return None
+
+    @abstractmethod
+    def figures(self, config: C, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+        """Draws one run."""
+
+    def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
+        """Draws what only several runs together show."""
+        return []
+
+    def report(self, results: Sequence[Result]) -> str:
+        """Tables as the paper prints them, in Markdown, for the study's report; empty where there are none."""
+        return ""
+
+    def tuning(self, controller: str) -> Tuning:
+        """How the parameters of a controller are searched. Raises ConfigError if the study does not say."""
+        raise ConfigError(f"study {self.name!r} cannot be tuned; a study can if it overrides `Study.tuning`")

@@ -1,0 +1,115 @@
+"""Runs one configuration of a study: loop, log, metrics, figures."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from pliant import loop
+from pliant.experiments.base import CaseConfig, Experiment, Result, Study
+from pliant.interfaces import Observer
+from pliant.signals import Tick
+from pliant.telemetry.info import RunInfo
+from pliant.telemetry.log import Log
+from pliant.telemetry.recorder import Recorder
+
+Progress = Callable[[float], None]
+"""called with the share of the run that is done, 0…1"""
+
+
+def run_case(
+    study: Study[Any],
+    config: CaseConfig,
+    folder: Path | None = None,
+    *,
+    progress: Progress | None = None,
+    observers: Sequence[Observer] = (),
+    figures: bool = True,
+    experiment: Experiment | None = None,
+    pace: Callable[[Iterable[object]], Iterable[object]] = iter,
+) -> Result:
+    """Runs a configuration to its end, or to the failure that stops it; what was recorded until then is kept.
+
+    Args:
+        study: the study that the configuration belongs to.
+        config: what to run.
+        folder: where log and figures go; None keeps the log in memory and draws nothing.
+        progress: told how far the run is.
+        observers: more watchers of the loop.
+        figures: whether to draw.
+        experiment: the wired loop, if the caller already built it.
+        pace: makes a clock of the periods to run, for example one that follows wall time.
+
+    Returns:
+        Metrics, failure and files. KeyboardInterrupt passes through after the log was closed.
+    """
+    wired = experiment or study.build(config)
+    stem = file_stem(config)
+    recorder = Recorder(
+        None if folder is None else folder / f"{stem}.mcap", run_info(study, config, wired), channels=wired.channels
+    )
+    ticks = round(config.duration / wired.plant.period)
+    watchers: list[Observer] = [recorder, *observers]
+    if progress is not None:
+        watchers.append(_Reporter(progress, ticks))
+    with recorder:
+        outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), watchers)
+        recorder.close(outcome.failure)
+    log = recorder.log()
+    return _measured(study, config, wired, log, outcome.failure, folder, figures)
+
+
+def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> RunInfo:
+    """What the log says about the run."""
+    return RunInfo(
+        study=study.name,
+        case=config.case,
+        controller=config.controller,
+        robot=config.robot,
+        seed=config.seed,
+        joints=experiment.robot.joint_names,
+        torque_limits=tuple(experiment.robot.torque_limit),
+        config=config.model_dump(mode="json"),
+    )
+
+
+def file_stem(config: CaseConfig) -> str:
+    """Name of a run's files, without suffix."""
+    parts = (config.case, config.controller, config.variant, f"seed{config.seed}")
+    text = "_".join(part for part in parts if part)
+    return re.sub(r"[^A-Za-z0-9_.-]+", "-", text)
+
+
+def _measured(
+    study: Study[Any],
+    config: CaseConfig,
+    wired: Experiment,
+    log: Log,
+    failure: str | None,
+    folder: Path | None,
+    figures: bool,
+) -> Result:
+    path = folder / f"{file_stem(config)}.mcap" if folder is not None else None
+    if failure is not None:
+        return Result(config, (), failure, wired.warnings, path)
+    drawn = study.figures(config, wired, log, folder) if folder is not None and figures else []
+    measured = study.metrics(config, log)
+    return Result(config, measured, study.verdict(config, measured), wired.warnings, path, tuple(drawn))
+
+
+class _Reporter:
+    """Tells the progress ten times a second at most."""
+
+    def __init__(self, progress: Progress, ticks: int) -> None:
+        self._progress, self._ticks = progress, ticks
+        self._count, self._next = 0, 0.0
+
+    def __call__(self, tick: Tick) -> None:
+        self._count += 1
+        now = time.monotonic()
+        if now >= self._next or self._count == self._ticks:
+            self._next = now + 0.1
+            self._progress(self._count / self._ticks)

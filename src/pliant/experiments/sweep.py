@@ -1,0 +1,100 @@
+"""Many runs: one after the other, side by side in processes, or on a dask cluster."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pliant.errors import PliantError
+from pliant.experiments.base import CaseConfig, Result
+from pliant.experiments.config import merged, parse_assignments
+from pliant.experiments.pool import Lost, Pool, in_this_process
+from pliant.experiments.registry import get_study
+from pliant.experiments.results import Request, Run, key
+from pliant.experiments.runner import run_case
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run, as it is sent to another process."""
+
+    study: str
+    config: CaseConfig
+    folder: Path | None = None
+    """where log and figures go; None: metrics only"""
+    logs: bool = False
+    """keep the log even if the study does not show the run"""
+
+
+def asked_runs(request: Request) -> list[CaseConfig]:
+    """Every run that a request stands for, each once.
+
+    Raises:
+        ConfigError: an unknown study, case or key, or a value that breaks a rule.
+    """
+    study = get_study(request.study)
+    changes = parse_assignments(request.assignments)
+    cases = request.cases or tuple(study.cases)
+    runs = [merged(config, changes) for case in cases for config in study.runs(case, request.seeds)]
+    return list({key(config): config for config in runs}.values())
+
+
+def check_buildable(study_name: str, config: CaseConfig) -> None:
+    """Wires a run without running it, so that what is wrong with it is said before a sweep begins.
+
+    Raises:
+        PliantError: it cannot be wired.
+    """
+    get_study(study_name).build(config)
+
+
+def sweep(
+    study_name: str,
+    configs: Sequence[CaseConfig],
+    folder: Path | None = None,
+    *,
+    pool: Pool = in_this_process,
+    logs: bool = False,
+) -> Iterator[Run]:
+    """Runs configurations and yields each run as it ends; nothing that happens to one of them ends the others.
+
+    Args:
+        study_name: the study that the configurations belong to.
+        configs: what to run.
+        folder: where logs and figures go; None: metrics only.
+        pool: where they are run; results do not depend on it.
+        logs: keep the log of every run; otherwise only of those that the study shows.
+    """
+    folder = None if folder is None else folder.resolve()  # workers may have another working directory
+    tasks = [Task(study_name, config, folder, logs) for config in configs]
+    for index, outcome in pool(run_task, tasks):
+        yield Run(Result(configs[index], (), outcome.reason), "lost", 0.0) if isinstance(outcome, Lost) else outcome
+
+
+def run_task(task: Task) -> Run:
+    """One run, in whatever process this is. An exception is a failed run with a reason, not the end of the sweep."""
+    started = time.perf_counter()
+    try:
+        result = _run(task)
+    except Exception as error:
+        return Run(Result(task.config, (), _sentence(error)), "crashed", time.perf_counter() - started)
+    status = "finished" if result.failure is None else "failed"
+    return Run(result, status, time.perf_counter() - started)
+
+
+def _run(task: Task) -> Result:
+    study = get_study(task.study)
+    shown = study.shows(task.config)
+    visible = task.folder is not None and task.folder.is_dir()  # not on a machine that does not share the folder
+    folder = task.folder if visible and (shown or task.logs) else None
+    return run_case(study, task.config, folder, figures=shown)
+
+
+def _sentence(error: Exception) -> str:
+    if isinstance(error, PliantError):
+        return str(error)
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__} in {Path(where.filename).name}, line {where.lineno}: {error}"

@@ -1,0 +1,102 @@
+"""What a search over a controller's parameters needs to know: which ones, on which runs, and what is good."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pliant.errors import ConfigError, options
+from pliant.experiments.base import CaseConfig, Result, Study
+
+PENALTY = 1e9
+"""objective of a set of parameters with which every run fails; with some of them, that share of it"""
+
+
+@dataclass(frozen=True)
+class Range:
+    """Between which values a parameter is searched.
+
+    Raises:
+        ConfigError: on construction, if it is empty, or logarithmic and not above zero.
+    """
+
+    low: float
+    high: float
+    log: bool = False
+    """whether its order of magnitude matters, not its value"""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+            raise ConfigError(f"a range needs finite low < high, got {self.low:g} and {self.high:g}")
+        if self.log and self.low <= 0.0:
+            raise ConfigError(f"a logarithmic range needs low above 0, got {self.low:g}")
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """A search. The runs should not be those of the study's table: what was tuned on is no test.
+
+    Raises:
+        ConfigError: on construction, if there is nothing to search or the start does not fit the parameters.
+    """
+
+    parameters: Mapping[str, Range]
+    """dotted key of the configuration → where it is searched"""
+    runs: Sequence[CaseConfig]
+    """what every set of parameters is judged on"""
+    objective: Callable[[Sequence[Result]], float] = field(repr=False)
+    """results of all the runs, none of which failed → a number, lower is better"""
+    start: Mapping[str, float]
+    """today's values: tried first, so that the best is never worse"""
+    apply: Callable[[Mapping[str, float]], Mapping[str, Any]] | None = field(default=None, repr=False)
+    """sampled numbers → nested changes of the configuration; None: each number goes to its own key"""
+
+    def __post_init__(self) -> None:
+        if not self.parameters or not self.runs:
+            raise ConfigError("a tuning needs at least one parameter and one run")
+        if set(self.start) != set(self.parameters):
+            raise ConfigError(f"a tuning's start needs one value per parameter: {options(self.parameters)}")
+        for name, range_ in self.parameters.items():
+            if not range_.low <= self.start[name] <= range_.high:
+                raise ConfigError(
+                    f"the start of {name} must lie in {range_.low:g} … {range_.high:g}, got {self.start[name]:g}"
+                )
+
+    def changes(self, values: Mapping[str, float]) -> Mapping[str, Any]:
+        """Nested changes of a run's configuration that stand for sampled values."""
+        return nested(values) if self.apply is None else self.apply(values)
+
+    def judge(self, results: Sequence[Result]) -> float:
+        """The objective; large but finite where runs failed or it is not a number, larger the more of them failed."""
+        failed = sum(result.failure is not None for result in results)
+        if failed:
+            return PENALTY * failed / len(results)
+        value = float(self.objective(results))
+        return value if math.isfinite(value) else PENALTY
+
+
+def find_tuning(study: Study[Any], controller: str) -> Tuning:
+    """How a controller of a study is tuned.
+
+    Raises:
+        ConfigError: the study has no such controller, or does not say how it is tuned.
+    """
+    if controller not in study.controllers:
+        raise ConfigError(
+            f"study {study.name!r} has no controller {controller!r}; {options(study.controllers, controller)}"
+        )
+    return study.tuning(controller)
+
+
+def nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Turns `{"a.b": 1.0}` into `{"a": {"b": 1.0}}`."""
+    tree: dict[str, Any] = {}
+    for name, value in values.items():
+        *parents, last = name.split(".")
+        node = tree
+        for part in parents:
+            node = node.setdefault(part, {})
+        node[last] = value
+    return tree

@@ -1,0 +1,1 @@
+"""What loop and page say to each other."""

@@ -1,0 +1,217 @@
+"""What loop and page tell each other. Frozen values; of each kind the latest one counts, unless it is `Queued`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from pliant.experiments.base import CaseConfig
+from pliant.live.page.visual_shapes import Look
+from pliant.simulation import Imperfections, Scene
+from pliant.spatial import Array
+
+
+class Queued:
+    """Marks messages of which every single one counts, in their order."""
+
+    __slots__ = ()
+
+
+# ---------------------------------------------------------------------- page → loop
+
+
+@dataclass(frozen=True, slots=True)
+class Begin:
+    """Start a run anew."""
+
+    study: str
+    config: CaseConfig
+    fresh: bool = True
+    """False: surfaces, imperfections and target stay as the page left them"""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """The configuration with other parameters of the controller; they take effect between two periods."""
+
+    config: CaseConfig
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """The scene with other surfaces; the robot and everything that moves stay where they are."""
+
+    scene: Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Flaws:
+    """The robot with other imperfections."""
+
+    config: Imperfections
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """Where the first task should go, seen from its own reference, and how hard it should press."""
+
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """m, world axes"""
+    force_scale: float = 1.0
+    """factor on the desired wrench"""
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """How simulated time passes."""
+
+    playing: bool = True
+    speed: float = 1.0
+    """simulated seconds per second of wall time"""
+    repeat: bool = True
+    """start again where the run ends"""
+
+
+@dataclass(frozen=True, slots=True)
+class StepOnce(Queued):
+    """Some periods, while paused."""
+
+    periods: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class PushNow(Queued):
+    """A constant force on a frame from now on."""
+
+    frame: str
+    force: tuple[float, float, float]
+    """N, world axes"""
+    duration: float
+    """s"""
+
+
+@dataclass(frozen=True, slots=True)
+class Pull:
+    """A force that follows somebody's hand. It ends by itself unless it is renewed: hands and browsers vanish."""
+
+    frame: str
+    force: tuple[float, float, float]
+    """N, world axes; zero lets go"""
+
+
+@dataclass(frozen=True, slots=True)
+class Record(Queued):
+    """Start a log in a file, or stop it."""
+
+    path: Path | None
+
+
+# ---------------------------------------------------------------------- loop → page
+
+
+@dataclass(frozen=True, slots=True)
+class Ready(Queued):
+    """A run begins: what there is to see and to turn."""
+
+    run: int
+    """number of the run, which pictures and samples carry too"""
+    study: str
+    config: CaseConfig
+    looks: tuple[Look, ...]
+    bodies: int
+    frames: tuple[str, ...]
+    """of the robot, that can be pushed"""
+    columns: tuple[str, ...]
+    """of the samples that follow"""
+    period: float
+    """s"""
+    scene: Scene | None
+    """None: it cannot be changed here"""
+    flaws: Imperfections | None
+    """None: they cannot be changed here"""
+    warnings: tuple[str, ...] = ()
+    restarts: bool = True
+    """whether case and controller can be chosen"""
+
+
+@dataclass(frozen=True, slots=True)
+class Looks(Queued):
+    """The scene changed its shape."""
+
+    looks: tuple[Look, ...]
+    scene: Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """One instant, to be drawn."""
+
+    run: int
+    time: float
+    """s"""
+    positions: Array
+    """(bodies, 3) m"""
+    quaternions: Array
+    """(bodies, 4) w, x, y, z"""
+    ghost: tuple[Array, Array] | None
+    """the same for the reference's posture; None if it has none"""
+    tool: Array
+    """(3,) m, frame of the first task"""
+    target: Array | None
+    """(3,) m, where it should be; None without a task"""
+    nominal: Array | None
+    """(3,) m, the same without what the page added"""
+    contacts: Mapping[str, tuple[Array, Array]]
+    """frame → its position (3,) m and the force (3,) N on the robot there"""
+    asked: Array
+    """(3,) N that the controller or the reference asks of the first frame's contact, as a reaction on the robot"""
+    predicted_path: Array | None = None
+    """(N, 3) m"""
+    predicted_force: Array | None = None
+    """(N, 3) N"""
+    pushes: Mapping[str, tuple[Array, Array]] = field(default_factory=dict[str, tuple[Array, Array]])
+    """frame → its position (3,) m and the force (3,) N that pushes it"""
+    phase: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Pulse:
+    """How the loop fares."""
+
+    time: float
+    """s"""
+    playing: bool
+    real_time_factor: float
+    """simulated seconds per second of wall time, of the last second"""
+    missed: int
+    """periods in which planning and control took longer than the period, since the start"""
+    ticks: int
+    recording: Path | None
+    ended: str | None = None
+    """why nothing moves any more"""
+
+
+@dataclass(frozen=True, slots=True)
+class Samples(Queued):
+    """A piece of the curves."""
+
+    run: int
+    """number of the run that it belongs to"""
+    rows: Array
+    """(k, columns), the first is the time in s"""
+
+
+@dataclass(frozen=True, slots=True)
+class Note(Queued):
+    """Something that people should read."""
+
+    kind: Literal["refused", "failed", "recorded", "note"]
+    text: str
+
+
+Message = (
+    Begin | Parameters | Surroundings | Flaws | Aim | Flow | StepOnce | PushNow | Pull | Record
+    | Ready | Looks | Picture | Pulse | Samples | Note
+)  # fmt: skip

@@ -1,0 +1,1 @@
+"""The control loop that a page follows and steers."""

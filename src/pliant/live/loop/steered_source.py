@@ -1,0 +1,108 @@
+"""References that people change while they are followed."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pliant.interfaces import ReferenceSource
+from pliant.live.loop.requests import Desk
+from pliant.references.exploration.haptic_exploration import HapticExploration
+from pliant.signals import Estimate, ImpedanceTuning, Preview, Reference, TaskReference
+from pliant.spatial import Array
+
+TARGET_SPEED = 0.5  # m/s: a target that jumps would put energy into the robot that no ledger books
+
+
+class Shift(NamedTuple):
+    """What the page adds to the first task at present."""
+
+    offset: Array
+    """(3,) m"""
+    velocity: Array
+    """(3,) m/s with which it changes"""
+    force_scale: float
+
+
+class SteeredState(NamedTuple):
+    """State of the source inside, and how far the target was moved."""
+
+    inner: Any
+    time: float
+    """s of the last step"""
+    offset: Array
+    """(3,) m"""
+
+
+class SteeredSource(ReferenceSource[SteeredState]):
+    """Another source's references with what the desk says: other tunings, another place, another force.
+
+    The place moves at `TARGET_SPEED` at most; tunings and force are swapped whole between two ticks.
+
+    Args:
+        inner: where the references come from.
+        desk: read once a step; told how far the target was moved.
+    """
+
+    def __init__(self, inner: ReferenceSource[Any], desk: Desk) -> None:
+        self.inner, self._desk = inner, desk
+
+    def init(self, estimate: Estimate) -> SteeredState:
+        return SteeredState(self.inner.init(estimate), estimate.time, np.zeros(3))
+
+    def step(self, estimate: Estimate, state: SteeredState) -> tuple[Reference, SteeredState]:
+        reference, inner = self.inner.step(estimate, state.inner)
+        wishes = self._desk.wishes
+        shift = _moved(state.offset, np.array(wishes.aim.offset), estimate.time - state.time, wishes.aim.force_scale)
+        self._desk.offset = shift.offset
+        if wishes.tunings:
+            reference = _retuned(reference, wishes.tunings)
+        if wishes.whole is not None:
+            reference = replace(reference, tuning=wishes.whole)
+        if reference.tasks and (shift.force_scale != 1.0 or np.any(shift.offset) or np.any(shift.velocity)):
+            reference = _shifted(reference, shift)
+        return reference, SteeredState(inner, estimate.time, shift.offset)
+
+
+def steered(source: ReferenceSource[Any], desk: Desk) -> ReferenceSource[Any]:
+    """A source with what the desk says; an exploration hears it first, since it looks for the place and the force."""
+    if isinstance(source, HapticExploration):
+        exploring = copy.copy(source)
+        exploring.inner = SteeredSource(source.inner, desk)
+        return exploring
+    return SteeredSource(source, desk)
+
+
+def _moved(offset: Array, wanted: Array, duration: float, force_scale: float) -> Shift:
+    """One step towards the wanted offset."""
+    way = wanted - offset
+    distance = float(np.linalg.norm(way))
+    if distance == 0.0 or duration <= 0.0:
+        return Shift(offset, np.zeros(3), force_scale)
+    step = way * min(1.0, TARGET_SPEED * duration / distance)
+    return Shift(wanted if distance <= TARGET_SPEED * duration else offset + step, step / duration, force_scale)
+
+
+def _retuned(reference: Reference, tunings: Mapping[str, ImpedanceTuning]) -> Reference:
+    tasks = [replace(task, tuning=tunings.get(task.frame, task.tuning)) for task in reference.tasks]
+    return replace(reference, tasks=tuple(tasks))
+
+
+def _shifted(reference: Reference, shift: Shift) -> Reference:
+    first, *others = reference.tasks
+    preview = reference.preview and _shifted_preview(reference.preview, shift)
+    return replace(reference, tasks=(_shifted_task(first, shift), *others), preview=preview)
+
+
+def _shifted_task(task: TaskReference, shift: Shift) -> TaskReference:
+    twist = task.velocity.copy()
+    twist[:3] += shift.velocity
+    return replace(task, position=task.position + shift.offset, velocity=twist, wrench=shift.force_scale * task.wrench)
+
+
+def _shifted_preview(preview: Preview, shift: Shift) -> Preview:
+    return replace(preview, position=preview.position + shift.offset, wrench=shift.force_scale * preview.wrench)

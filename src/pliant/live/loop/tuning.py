@@ -1,0 +1,125 @@
+"""From one configuration of a controller to the next, without stopping it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pliant.entries import ControllerConfig, ControllerEntry
+from pliant.experiments.base import CaseConfig
+from pliant.interfaces import Controller
+from pliant.live.page.fields import Group, Leaf, at, group_of
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.robot import Robot
+from pliant.signals import ImpedanceTuning
+
+
+@dataclass(frozen=True, slots=True)
+class Retuning:
+    """What has to change so that a running controller has other parameters."""
+
+    tunings: Mapping[str, ImpedanceTuning]
+    """frame → tuning, carried by the references"""
+    whole: Any
+    """tuning of the whole controller, carried by the references; None if it takes none"""
+    controller: Controller[Any] | None
+    """a successor, where a parameter changed that no reference carries"""
+
+
+def online_fields(config: CaseConfig) -> frozenset[str]:
+    """Parts of a case that references carry, in studies whose controllers have no parameters of their own."""
+    if parameters_of(config) is not None:
+        return frozenset()
+    values = {name: getattr(config, name) for name in type(config).model_fields}
+    return frozenset(name for name, value in values.items() if _is_online(value))
+
+
+def online_group(config: CaseConfig) -> Group:
+    """The values of these parts; a law or a shape of an impedance is not a number that a reference carries."""
+    online = online_fields(config)
+    group = group_of(config, skip=frozenset(type(config).model_fields) - online)
+    kept: list[Leaf | Group] = []
+    for part in group.entries:
+        if isinstance(part, Group) and not isinstance(at(config, part.path), ExplorationConfig):
+            numbers = [entry for entry in part.entries if isinstance(entry, Group) or entry.kind != "choice"]
+            kept.append(replace(part, entries=tuple(numbers)))
+        else:
+            kept.append(part)
+    return replace(group, entries=tuple(kept))
+
+
+def retuning_of_case(config: CaseConfig) -> Retuning:
+    """The same for the parts that `online_fields` names."""
+    parts = [getattr(config, name) for name in sorted(online_fields(config))]
+    frame = str(getattr(config, "frame", ""))
+    tuning = next((part.tuning() for part in parts if not isinstance(part, ExplorationConfig)), None)
+    tunings = {} if tuning is None else {frame: tuning}
+    whole = next((part for part in parts if isinstance(part, ExplorationConfig)), None)
+    return Retuning(tunings, whole, None)
+
+
+def _is_online(value: Any) -> bool:
+    if isinstance(value, ExplorationConfig):
+        return True
+    find = getattr(value, "tuning", None)
+    return callable(find) and isinstance(find(), ImpedanceTuning)
+
+
+def parameters_of(config: CaseConfig) -> ControllerConfig | None:
+    """Typed parameters of the controller that a case has chosen; None if its study offers none."""
+    find = getattr(config, "parameters", None)
+    found = find() if callable(find) else None
+    return found if isinstance(found, ControllerConfig) else None
+
+
+def retuning(
+    before: ControllerConfig, after: ControllerConfig, config: CaseConfig, robot: Robot, period: float
+) -> Retuning:
+    """How to get from one set of parameters to another.
+
+    Args:
+        before: of the controller that runs.
+        after: wanted.
+        config: of the case, whose `entry` builds controllers.
+        robot: of the loop.
+        period: control period, s.
+
+    Raises:
+        PliantError: no controller can be built from `after`.
+    """
+    tunings = tunings_of(after)
+    whole = _whole(after)
+    if _structure(before) == _structure(after) and (tunings or whole is not None):
+        return Retuning(tunings, whole, None)
+    entry = getattr(config, "entry", None)
+    if not isinstance(entry, ControllerEntry):
+        return Retuning(tunings, whole, None)
+    return Retuning(tunings, whole, entry.build(robot, after, period))
+
+
+def tunings_of(config: ControllerConfig) -> Mapping[str, ImpedanceTuning]:
+    """Frame → tuning of the fractal impedances that a configuration describes."""
+    find = getattr(config, "frame_tasks", None)
+    tasks: Any = find() if callable(find) else ()
+    return {task.frame: task.tuning for task in tasks}
+
+
+def _whole(config: ControllerConfig) -> Any:
+    """Tuning of the whole controller, if the configuration can say it as a frozen value."""
+    find = getattr(config, "tuning", None)
+    return find() if callable(find) else None
+
+
+def _structure(config: ControllerConfig) -> Any:
+    """What the references cannot carry: everything but the numbers of the impedances."""
+    values = config.model_dump()
+    if _whole(config) is not None:
+        return type(config)
+    if callable(getattr(config, "frame_tasks", None)):
+        kept = {
+            label: None if task is None else (task["frame"], task["profile"], task["rotation"] is None)
+            for label, task in values["tasks"].items()
+        }
+        return {**values, "tasks": kept}
+    return values

@@ -1,0 +1,1 @@
+"""What the browser shows, and the controls on it."""

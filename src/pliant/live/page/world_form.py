@@ -1,0 +1,90 @@
+"""Tilt, stiffness, damping and friction of everything in the scene, as a typed configuration of its own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from pliant.live.page.fields import Group, Path, group_of
+from pliant.simulation import Plane, Scene
+from pliant.simulation.scene import Thing
+from pliant.spatial import frame_with_z_along, rpy
+
+
+def _quantity(default: float, unit: str, text: str, low: float, high: float, **rules: Any) -> Any:
+    return Field(default, description=text, json_schema_extra={"unit": unit, "minimum": low, "maximum": high}, **rules)
+
+
+class SurfaceForm(BaseModel):
+    """How a thing feels to the touch."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    stiffness: float = _quantity(1e4, "N/m", "force per penetration", 500.0, 5e4, gt=0.0)
+    damping: float = _quantity(1e2, "N s/m", "force per speed of penetration", 0.0, 500.0, ge=0.0)
+    friction: float = _quantity(0.5, "1", "Coulomb coefficient", 0.0, 1.5, ge=0.0)
+
+
+class PlaneForm(SurfaceForm):
+    """The same, and how it leans against how the study put it up."""
+
+    tilt: float = _quantity(
+        0.0, "rad", "turned about the first horizontal axis of the surface", -0.5, 0.5, ge=-1.5, le=1.5
+    )
+    turn: float = _quantity(0.0, "rad", "turned about the second one", -0.5, 0.5, ge=-1.5, le=1.5)
+
+
+class SceneForm:
+    """The values of a scene, and the scene that changed values give.
+
+    Args:
+        built: the scene as the study built it.
+    """
+
+    def __init__(self, built: Scene) -> None:
+        self._built = built
+        self.scene = built
+        self._values: dict[str, SurfaceForm] = {thing.name: _read(thing) for thing in built.things}
+
+    def group(self) -> Group:
+        """What can be changed: one group per thing."""
+        groups = [group_of(values, (name,)) for name, values in self._values.items()]
+        return Group((), "", tuple(groups))
+
+    def changed(self, path: Path, value: Any) -> Scene:
+        """The scene with one value changed. Raises ConfigError if the value breaks a rule."""
+        from pliant.experiments.config import merged
+
+        name, key = path
+        values = self._values | {name: merged(self._values[name], {key: value})}
+        things = tuple(_made(thing, values[thing.name]) for thing in self._built.things)
+        scene = replace(self._built, things=things)
+        self._values, self.scene = values, scene
+        return scene
+
+
+def _read(thing: Thing) -> SurfaceForm:
+    surface = thing.surface
+    kind = PlaneForm if isinstance(thing, Plane) else SurfaceForm
+    return kind(stiffness=surface.stiffness, damping=surface.damping, friction=surface.friction)
+
+
+def _made(thing: Thing, values: SurfaceForm) -> Thing:
+    moving = thing.surface.friction_moving
+    if moving is not None and thing.surface.friction > 0.0:
+        moving *= values.friction / thing.surface.friction
+    surface = replace(
+        thing.surface,
+        stiffness=values.stiffness,
+        damping=values.damping,
+        friction=values.friction,
+        friction_moving=moving,
+    )
+    if isinstance(thing, Plane) and isinstance(values, PlaneForm):
+        R = frame_with_z_along(thing.normal) @ rpy(values.tilt, values.turn, 0.0)
+        x, y, z = (float(part) for part in np.asarray(R)[:, 2])
+        return replace(thing, surface=surface, normal=(x, y, z))
+    return replace(thing, surface=surface)

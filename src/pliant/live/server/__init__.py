@@ -1,0 +1,1 @@
+"""The processes and the web server of the page."""

@@ -1,0 +1,1 @@
+"""The bridge to crocoddyl, and the node on any pinocchio model."""

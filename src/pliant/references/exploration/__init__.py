@@ -1,0 +1,1 @@
+"""Haptic exploration: targets move until contact forces are the desired ones."""

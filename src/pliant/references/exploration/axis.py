@@ -1,0 +1,221 @@
+"""Haptic exploration of one axis: a state machine over plain numbers, so that a tick costs a microsecond."""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+
+from pliant.references.exploration.release import Retreat
+from pliant.references.exploration.rules import AxisLimits, AxisRules
+from pliant.references.exploration.sliding_span import SlidingSpan
+
+_CAUTION = 3.0
+"""a contact at rest shows at most K_0; one that shows more is ringing, and up to this factor slows the regulation
+down"""
+
+
+_RELIEF = 0.25  # s after a drop of F_d; a retreat at any other time answers noise or ringing and is left alone
+
+
+_HASTE = 2.0
+"""share of k_I in a retreat: what it regulates is the impedance's own spring, and the time-out of its phases waits"""
+
+
+class AxisPhase(IntEnum):
+    """What an axis is doing."""
+
+    OFF = 0
+    """no force desired: the offset returns to zero"""
+    FREE = 1
+    """a force desired, no contact"""
+    CONTACT = 2
+    """regulating the force"""
+    LOST = 3
+    """contact gone while regulating: the offset waits for it"""
+
+
+class ExploredAxis:
+    """State of one axis. `step` changes it in place; the source that owns it hands it on from tick to tick."""
+
+    __slots__ = (
+        "absent",
+        "at_bound",
+        "clamped",
+        "filtered",
+        "forces",
+        "offset",
+        "phase",
+        "quiet",
+        "reachable",
+        "relief",
+        "retreat",
+        "stiffness",
+        "target",
+        "targets",
+        "touching",
+        "unreachable",
+        "wanted",
+    )
+
+    def __init__(self) -> None:
+        self.offset = 0.0
+        """Δx, m or rad"""
+        self.phase = AxisPhase.OFF
+        self.stiffness = 0.0
+        """K̂, N/m: change of force per motion of the target; 0 until the first step"""
+        self.reachable = 0.0
+        """largest force that the bound of the offset allows, N"""
+        self.unreachable = False
+        self.clamped = 0.0
+        """what F_max took from the desired force, N"""
+        self.touching = False
+        self.filtered = 0.0
+        self.quiet = 0.0
+        self.absent = 0.0
+        self.at_bound = 0.0
+        self.target = 0.0
+        """last x_d + Δx, m"""
+        self.retreat = Retreat()
+        self.wanted = 0.0
+        """last F_d, clamped, N"""
+        self.relief = 0.0
+        """s for which a retreat may count as asked for"""
+        self.forces, self.targets = SlidingSpan(), SlidingSpan()
+
+    def step(
+        self,
+        rules: AxisRules,
+        limits: AxisLimits,
+        desired: float,
+        force: float,
+        position: float,
+        time: float,
+        period: float,
+    ) -> None:
+        """Moves the offset.
+
+        Args:
+            rules: parameters.
+            limits: K_0, F_max, x_b of the axis.
+            desired: F_d, N.
+            force: F, measured, N.
+            position: x_d without the offset, m.
+            time: s.
+            period: s since the last step.
+        """
+        if desired == 0.0 and self.offset == 0.0 and self.phase is AxisPhase.OFF:
+            self.target, self.wanted, self.clamped, self.filtered = position, 0.0, 0.0, force
+            return
+        wanted = min(max(desired, -limits.force_max), limits.force_max)
+        self.clamped = desired - wanted
+        if abs(wanted) < abs(self.wanted) - rules.contact_on:
+            self.relief = _RELIEF
+        self.wanted, self.relief = wanted, max(self.relief - period, 0.0)
+        active = wanted != 0.0 and limits.stiffness > 0.0
+        self._feel(rules, force, period)
+        self._switch(rules, active, period)
+        if self.phase is AxisPhase.CONTACT:
+            if self.retreat.began and self.stiffness < 0.5 * limits.stiffness:
+                self.retreat.end()  # a soft contact whose damping had made it seem stiff
+                self.retreat.waived = True
+            lasting = self.retreat.lasting(force)
+            if self.retreat.resting > 0.0:
+                self.forces.clear()  # the impedance switches: what the force does says nothing about the contact
+                self.targets.clear()
+            else:
+                self._learn(rules, limits.stiffness, lasting, time, period)
+            gain = _HASTE * rules.gain if self.retreat.began else rules.gain
+            rate = -gain * (wanted - lasting) / self.stiffness
+            asked = self.relief > 0.0 and self.stiffness > 0.5 * limits.stiffness
+            rate = min(max(rate, -rules.speed), rules.speed)
+            free = self.offset + self.retreat.rate(rules, rate, force, wanted, period, asked) * period
+        else:
+            self._forget(limits.stiffness)
+            free = self._returning(rules, wanted, period)
+        self.offset = min(max(free, -limits.range), limits.range)
+        self.target = position + self.offset
+        self._diagnose(rules, limits, wanted, force, free, period)
+
+    def hold(self, limits: AxisLimits) -> None:
+        """Moves nothing (there is no force signal), but keeps to the bound."""
+        self.offset = min(max(self.offset, -limits.range), limits.range)
+
+    def _feel(self, rules: AxisRules, force: float, period: float) -> None:
+        """Contact with hysteresis: a filtered force begins it, a force that stays low ends it."""
+        share = period / (rules.contact_filter + period) if period > 0.0 else 0.0
+        self.filtered += share * (force - self.filtered)
+        if abs(self.filtered) > rules.contact_on:
+            self.touching, self.quiet = True, 0.0
+        if abs(force) < rules.contact_off or abs(self.filtered) < rules.contact_off:
+            self.quiet += period
+            if self.quiet >= rules.release_time:
+                self.touching = False
+        else:
+            self.quiet = 0.0
+
+    def _switch(self, rules: AxisRules, active: bool, period: float) -> None:
+        if not active:
+            self.phase = AxisPhase.OFF
+        elif self.touching:
+            self.phase, self.absent = AxisPhase.CONTACT, 0.0
+        elif self.phase in (AxisPhase.CONTACT, AxisPhase.LOST):
+            self.absent += period
+            self.phase = AxisPhase.LOST if self.absent < rules.lost_time else AxisPhase.FREE
+        else:
+            self.phase = AxisPhase.FREE
+
+    def _learn(self, rules: AxisRules, ceiling: float, force: float, time: float, period: float) -> None:
+        """K̂ = span of the force / span of the target within the window; it starts at K_0, the stiffest there can be.
+
+        Spans rather than differences: a contact that bounces, or a force full of noise, then seems stiff, which slows
+        the regulation down. With differences it could seem soft, and the gain it earns keeps it bouncing.
+        """
+        oldest = time - rules.window * (1.0 + 1e-9)
+        change, moved = self.forces.add(time, force, oldest), self.targets.add(time, self.target, oldest)
+        if self.stiffness <= 0.0:
+            self.stiffness = ceiling
+        # With little motion the ratio is a lower bound: it may raise the estimate, not lower it.
+        seen = min(max(change / max(moved, rules.least_motion), rules.stiffness_floor), _CAUTION * ceiling)
+        if moved > rules.least_motion or seen > self.stiffness:
+            if seen < self.stiffness:  # its inverse, to which the speed of the regulation is proportional, is filtered
+                share = period / (rules.window + period)
+                self.stiffness /= 1.0 + share * (self.stiffness / seen - 1.0)
+            else:  # caution comes faster
+                self.stiffness += period / (0.25 * rules.window + period) * (seen - self.stiffness)
+        elif self.stiffness > ceiling:
+            self.stiffness += period / (rules.window + period) * (ceiling - self.stiffness)
+        self.stiffness = max(self.stiffness, min(rules.stiffness_floor, ceiling))
+
+    def _forget(self, ceiling: float) -> None:
+        if self.phase is not AxisPhase.LOST:
+            self.stiffness = ceiling
+            self.forces.clear()
+            self.targets.clear()
+            self.retreat.end()
+
+    def _returning(self, rules: AxisRules, wanted: float, period: float) -> float:
+        """Offset of an axis that does not regulate."""
+        offset = self.offset
+        if self.phase is AxisPhase.LOST:
+            return offset
+        if self.phase is AxisPhase.FREE and rules.seek_speed > 0.0:
+            return offset - math.copysign(rules.seek_speed * period, wanted)
+        if self.phase is AxisPhase.FREE and not rules.reset:
+            return offset
+        step = rules.reset_speed * period
+        return math.copysign(max(abs(offset) - step, 0.0), offset)
+
+    def _diagnose(
+        self, rules: AxisRules, limits: AxisLimits, wanted: float, force: float, free: float, period: float
+    ) -> None:
+        """Reachable bound, and whether the offset rests at its bound while force is missing."""
+        if self.phase is not AxisPhase.CONTACT:
+            self.reachable, self.at_bound, self.unreachable = limits.force_max, 0.0, False
+            return
+        side = math.copysign(1.0, wanted)
+        room = limits.range + side * self.offset
+        self.reachable = min(limits.force_max, max(side * force + min(self.stiffness, limits.stiffness) * room, 0.0))
+        missing = abs(wanted) - side * force
+        stuck = side * free <= -limits.range and missing > rules.contact_off
+        self.at_bound = self.at_bound + period if stuck else 0.0
+        self.unreachable = stuck and self.at_bound >= rules.unreachable_time

@@ -1,0 +1,173 @@
+"""Haptic exploration of one frame: its axes, or the one direction along the contact normal."""
+
+from __future__ import annotations
+
+import math
+
+from pliant.references.exploration.axis import AxisPhase, ExploredAxis
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.contact_normal import Vector, turned_normal, within_cone
+from pliant.references.exploration.paper import printed_step
+from pliant.references.exploration.rules import AxisLimits, AxisRules
+from pliant.signals import ImpedanceTuning
+
+
+class FrameRules:
+    """A configuration made ready for the ticks."""
+
+    __slots__ = ("angular", "config", "linear")
+
+    def __init__(self, config: ExplorationConfig) -> None:
+        self.config = config
+        self.linear = AxisRules.of(config, rotation=False)
+        self.angular = AxisRules.of(config, rotation=True)
+
+
+class ExploredFrame:
+    """State of one frame. `step` changes it in place."""
+
+    __slots__ = ("along", "axes", "limits", "normal", "offsets", "tuning")
+
+    def __init__(self) -> None:
+        self.axes = [ExploredAxis() for _ in range(6)]
+        self.along = ExploredAxis()
+        """the direction of the normal, if there is one"""
+        self.normal: Vector | None = None
+        self.offsets = [0.0] * 6
+        """Δx of every axis, m and rad"""
+        self.tuning: ImpedanceTuning | None = None
+        self.limits: list[AxisLimits] = []
+
+    def step(
+        self,
+        rules: FrameRules,
+        tuning: ImpedanceTuning,
+        desired: list[float],
+        measured: list[float] | None,
+        position: list[float],
+        velocity: list[float],
+        time: float,
+        period: float,
+    ) -> None:
+        """Moves the offsets.
+
+        Args:
+            rules: parameters.
+            tuning: impedance of the frame, 3 or 6 axes.
+            desired: F_d (6,), N and N·m.
+            measured: F (6,); None if there is no usable signal: everything holds.
+            position: x_d (3,) without the offset, m.
+            velocity: of x_d (3,), m/s.
+            time: s.
+            period: s since the last tick.
+        """
+        if tuning is not self.tuning:
+            self._take(tuning)
+        if measured is None:
+            for axis, limits in zip(self.axes, self.limits, strict=False):
+                axis.hold(limits)
+            self._bound()
+            return
+        first = 0
+        if rules.config.direction == "normal" and rules.config.mode == "adaptive":
+            self._step_normal(rules, desired, measured, position, velocity, time, period)
+            first = 3
+        for index in range(first, len(self.limits)):
+            axis, limits = self.axes[index], self.limits[index]
+            kind = rules.linear if index < 3 else rules.angular
+            if rules.config.mode == "paper":
+                _step_printed(axis, limits, desired[index], measured[index], rules.config)
+            else:
+                x = position[index] if index < 3 else 0.0
+                axis.step(kind, limits, desired[index], measured[index], x, time, period)
+            self.offsets[index] = axis.offset
+
+    def _take(self, tuning: ImpedanceTuning) -> None:
+        """New impedance: the offsets keep to its bound from this tick on."""
+        self.tuning = tuning
+        values = zip(tuning.stiffness.tolist(), tuning.force_max.tolist(), tuning.range.tolist(), strict=True)
+        self.limits = [AxisLimits(k, f, b if k > 0.0 else 0.0) for k, f, b in values]
+        self.axes[len(self.limits) :] = [ExploredAxis() for _ in range(6 - len(self.limits))]
+        self._bound()
+
+    def _bound(self) -> None:
+        for index, limits in enumerate(self.limits):
+            self.offsets[index] = min(max(self.offsets[index], -limits.range), limits.range)
+        for index in range(len(self.limits), 6):
+            self.offsets[index] = 0.0
+
+    def _step_normal(
+        self,
+        rules: FrameRules,
+        desired: list[float],
+        measured: list[float],
+        position: list[float],
+        velocity: list[float],
+        time: float,
+        period: float,
+    ) -> None:
+        """One direction instead of three: |F_d| along the normal, the tangents are left to the impedance."""
+        size = math.hypot(*desired[:3])
+        if size > 0.0:
+            self._turn(rules.config, desired, measured, velocity, size, period)
+        normal = self.normal
+        if normal is None:
+            return
+        n_0, n_1, n_2 = normal
+        force = n_0 * measured[0] + n_1 * measured[1] + n_2 * measured[2]
+        place = n_0 * position[0] + n_1 * position[1] + n_2 * position[2]
+        limits = _limits_along(self.limits, normal)
+        self.along.step(rules.linear, limits, size, force, place, time, period)
+        # Slewed: neither a turning normal nor a change of mode makes the target jump.
+        most = 2.0 * max(rules.linear.speed, rules.linear.reset_speed) * period
+        for index, n in enumerate(normal):
+            change = self.along.offset * n - self.offsets[index]
+            self.offsets[index] += min(max(change, -most), most)
+        self._bound()
+        for axis, offset in zip(self.axes[:3], self.offsets[:3], strict=True):
+            axis.offset = offset
+            axis.phase, axis.stiffness, axis.clamped = self.along.phase, self.along.stiffness, self.along.clamped
+            axis.reachable, axis.unreachable = self.along.reachable, self.along.unreachable
+
+    def _turn(
+        self,
+        config: ExplorationConfig,
+        desired: list[float],
+        measured: list[float],
+        velocity: list[float],
+        size: float,
+        period: float,
+    ) -> None:
+        wanted = (desired[0] / size, desired[1] / size, desired[2] / size)
+        normal = self.normal or wanted
+        if self.along.phase is AxisPhase.CONTACT:
+            force = (measured[0], measured[1], measured[2])
+            path = (velocity[0], velocity[1], velocity[2])
+            normal = turned_normal(
+                normal, force, path, config.contact_on, period, config.normal_time, config.normal_rate
+            )
+        elif self.along.phase is AxisPhase.FREE and self.along.offset == 0.0:
+            normal = wanted  # nothing is touched and nothing would jump
+        self.normal = within_cone(normal, wanted, config.normal_cone)
+
+
+def _limits_along(limits: list[AxisLimits], normal: Vector) -> AxisLimits:
+    """Impedance along a direction: the bound and the force at which the first axis meets its own."""
+    stiffness = sum(limit.stiffness * n * n for limit, n in zip(limits, normal, strict=False))
+    parts = [(limit, abs(n)) for limit, n in zip(limits, normal, strict=False) if abs(n) > 1e-9]
+    return AxisLimits(
+        stiffness,
+        min(limit.force_max / n for limit, n in parts),
+        min(limit.range / n for limit, n in parts),
+    )
+
+
+def _step_printed(
+    axis: ExploredAxis, limits: AxisLimits, desired: float, force: float, config: ExplorationConfig
+) -> None:
+    axis.offset = printed_step(
+        desired, force, axis.offset, limits.stiffness, limits.range, config.resolution, config.reset
+    )
+    touching = abs(force) > config.resolution
+    axis.phase = AxisPhase.OFF if desired == 0.0 else AxisPhase.CONTACT if touching else AxisPhase.FREE
+    axis.stiffness, axis.reachable = limits.stiffness, limits.force_max

@@ -1,0 +1,183 @@
+"""Haptic exploration: moves the targets of another source so that contact forces become the desired ones."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from pliant.errors import ConfigError, SignalError, options
+from pliant.interfaces import ReferenceSource
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.frame import ExploredFrame, FrameRules
+from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
+from pliant.spatial import Array, exp3
+
+CHANNELS: Mapping[str, str] = MappingProxyType(
+    {
+        "offset": "m, rad",
+        "phase": "",
+        "stiffness": "N/m, N·m/rad",
+        "reachable": "N, N·m",
+        "unreachable": "",
+        "clamped": "N, N·m",
+    }
+)
+"""name of a diagnostics channel below `exploration/FRAME/` → unit; each (k,), k = 3 or 6. Phases are those of
+`AxisPhase`."""
+
+_LONGEST_PERIOD = 0.02  # s; after a pause the offset goes on from where it was, it does not make up for it
+_FORGOTTEN = 0.1  # s; a frame without a task for longer starts anew, its controller did not follow the offset either
+
+
+class ExplorationState:
+    """Owned by the loop: frames, time of the last tick, parameters in force."""
+
+    __slots__ = ("frames", "inner", "rules", "time")
+
+    def __init__(self, inner: Any, rules: FrameRules, time: float) -> None:
+        self.inner, self.rules, self.time = inner, rules, time
+        self.frames: dict[str, _Frame] = {}
+
+
+class _Frame:
+    """An explored frame, the names of its channels, and when it was last there."""
+
+    __slots__ = ("explored", "names", "time")
+
+    def __init__(self, frame: str, time: float) -> None:
+        self.explored, self.time = ExploredFrame(), time
+        self.names = tuple(f"exploration/{frame}/{name}" for name in CHANNELS)
+
+
+class HapticExploration(ReferenceSource[ExplorationState]):
+    """Adds an offset Δx to the targets of another source, found by feeling: x_d^h = x_d + Δx, |Δx| ≤ x_b.
+
+    Per axis, while it touches something, Δx ← clamp(Δx − T·clamp(k_I (F_d − F)/K̂, ±v_max), ±x_b), where K̂ is the
+    stiffness that the contact and the impedance show together. Without a desired force the offset returns to zero. The
+    wrench of every task is what it should feel; F_d beyond F_max is clamped and the rest reported. Follows [HapFIC]
+    Tiseo et al. 2021, sec. II-B, with its Algorithm 1 as mode "paper".
+
+    A reference of the inner source whose `tuning` is an `ExplorationConfig` changes the parameters from that tick on.
+
+    Args:
+        inner: where the targets come from.
+        config: parameters; the defaults suit a rigid or soft contact at 0.5 to 2 kHz.
+        tunings: frame → impedance, for tasks that carry none; the reference passes it on, so that the impedance
+            controller sees the same.
+    """
+
+    def __init__(
+        self,
+        inner: ReferenceSource[Any],
+        config: ExplorationConfig | None = None,
+        tunings: Mapping[str, ImpedanceTuning] | None = None,
+    ) -> None:
+        self.inner, self.config = inner, config or ExplorationConfig()
+        self.tunings = dict(tunings or {})
+
+    def init(self, estimate: Estimate) -> ExplorationState:
+        return ExplorationState(self.inner.init(estimate), FrameRules(self.config), estimate.time)
+
+    def step(self, estimate: Estimate, state: ExplorationState) -> tuple[Reference, ExplorationState]:
+        """The inner reference with shifted targets.
+
+        Raises:
+            SignalError: a frame that should feel a force has no force signal, or time runs backwards.
+            ConfigError: a task without impedance parameters.
+        """
+        plain, state.inner = self.inner.step(estimate, state.inner)
+        period = estimate.time - state.time
+        if period < 0.0:
+            raise SignalError(f"time runs backwards: {estimate.time:g} s after {state.time:g} s")
+        state.time = estimate.time
+        if isinstance(plain.tuning, ExplorationConfig) and plain.tuning is not state.rules.config:
+            state.rules = FrameRules(plain.tuning)
+        diagnostics: dict[str, float | Array] = dict(plain.diagnostics)
+        period = min(period, _LONGEST_PERIOD)
+        tasks = tuple([self._felt(task, estimate, state, period, diagnostics) for task in plain.tasks])
+        reference = Reference(plain.time, tasks, plain.posture, plain.phase, plain.preview, plain.tuning, diagnostics)
+        return reference, state
+
+    def _felt(
+        self,
+        task: TaskReference,
+        estimate: Estimate,
+        state: ExplorationState,
+        period: float,
+        diagnostics: dict[str, float | Array],
+    ) -> TaskReference:
+        """The task with its target shifted."""
+        tuning = task.tuning or self.tunings.get(task.frame)
+        desired: list[float] = task.wrench.tolist()
+        place: list[float] = task.position.tolist()
+        if not math.isfinite(sum(desired) + sum(place)):
+            raise SignalError(f"the reference of frame {task.frame!r} is not finite: {place} m, {desired} N and N·m")
+        frame = state.frames.get(task.frame)
+        if frame is None or estimate.time - frame.time > _FORGOTTEN:
+            if not any(desired):
+                return task  # nothing to feel, and nothing shifted so far
+            frame = state.frames[task.frame] = _Frame(task.frame, estimate.time)
+        frame.time = estimate.time
+        if tuning is None:
+            raise ConfigError(
+                f"frame {task.frame!r} needs its impedance (stiffness, force_max, range) to be explored: give the task"
+                f" a tuning, or HapticExploration one for the frame; {options(self.tunings, task.frame)}"
+            )
+        measured = _usable(estimate, task, any(desired))
+        explored = frame.explored
+        explored.step(state.rules, tuning, desired, measured, place, task.velocity.tolist(), estimate.time, period)
+        _report(frame, diagnostics)
+        return _shifted(task, explored, tuning, desired, place)
+
+
+def _usable(estimate: Estimate, task: TaskReference, needed: bool) -> list[float] | None:
+    """The measured wrench (6,); None if it is not finite, or not there and not needed."""
+    wrench = estimate.wrenches.get(task.frame)
+    if wrench is None:
+        if needed:
+            raise SignalError(
+                f"frame {task.frame!r} should feel {task.wrench.tolist()} but has no force signal;"
+                f" {options(estimate.wrenches, task.frame)}"
+            )
+        return [0.0] * 6
+    values: list[float] = wrench.tolist()
+    return values if math.isfinite(sum(values)) else None
+
+
+def _report(frame: _Frame, diagnostics: dict[str, float | Array]) -> None:
+    explored = frame.explored
+    count = len(explored.limits)
+    axes = explored.axes[:count]
+    names = frame.names
+    table = np.array(
+        (
+            explored.offsets[:count],
+            [axis.phase for axis in axes],
+            [axis.stiffness for axis in axes],
+            [axis.reachable for axis in axes],
+            [axis.unreachable for axis in axes],
+            [axis.clamped for axis in axes],
+        ),
+        dtype=np.float64,
+    )
+    for name, row in zip(names, table, strict=True):
+        diagnostics[name] = row
+
+
+def _shifted(
+    task: TaskReference, explored: ExploredFrame, tuning: ImpedanceTuning, desired: list[float], place: list[float]
+) -> TaskReference:
+    offsets = explored.offsets
+    position = np.array((place[0] + offsets[0], place[1] + offsets[1], place[2] + offsets[2]))
+    rotation = task.rotation
+    if rotation is not None and (offsets[3] or offsets[4] or offsets[5]):
+        rotation = exp3(offsets[3:]) @ rotation
+    wrench = task.wrench
+    clamped = [axis.clamped for axis in explored.axes]
+    if any(clamped):
+        wrench = np.array([f - c for f, c in zip(desired, clamped, strict=True)])
+    return TaskReference(task.frame, position, rotation, task.velocity, task.acceleration, wrench, tuning)

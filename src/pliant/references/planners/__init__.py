@@ -1,0 +1,1 @@
+"""Planners: targets that jump become motion."""

@@ -1,0 +1,202 @@
+"""Harmonic planner: turns targets that jump into smooth motion, retargeted at any time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pliant.errors import SignalError
+from pliant.interfaces import ReferenceSource
+from pliant.references.planners.superposition import MotionLimits, Plan
+from pliant.references.planners.workspace import Workspace
+from pliant.references.trajectories.trajectory import vector
+from pliant.signals import Estimate, Reference, TaskReference
+from pliant.spatial import Array, exp3, log3, skew
+
+_STEADY = 0.02  # s: a target that moves all the time is looked at fifty times a second
+_ANGULAR_STEP = 1e-4  # s, for the difference that gives the angular acceleration
+_REST = vector(np.zeros(6), "rest")
+
+Place = Callable[[Array, str], tuple[Array, Array]]
+"""(q, frame) → position (3,) m and R_world_frame (3, 3), such as `Robot.placement`"""
+
+
+@dataclass(frozen=True)
+class PlannerLimits:
+    """Limits of the planned motion; the sum of overlapping pieces keeps them."""
+
+    linear: MotionLimits = MotionLimits(speed=0.3, acceleration=3.0)  # noqa: RUF009
+    """m/s and m/s²"""
+    angular: MotionLimits = MotionLimits(speed=1.0, acceleration=10.0)  # noqa: RUF009
+    """rad/s and rad/s²"""
+
+
+class PlannedFrame:
+    """Plans of one frame. Changed in place by the planner that owns it."""
+
+    __slots__ = ("base", "clamped", "linear", "position", "resting", "rotation", "taken", "turn")
+
+    def __init__(self, position: Array, rotation: Array) -> None:
+        self.linear = Plan(_floats(position))
+        self.turn = Plan((0.0, 0.0, 0.0))
+        """rotation vector of R·baseᵀ, rad"""
+        self.base = rotation
+        self.clamped: Array = np.zeros(3)
+        """what the workspace took from the last target, m"""
+        self.position: Array | None = None
+        """last target"""
+        self.rotation: Array | None = None
+        self.taken = -np.inf
+        """s at which the last target was taken"""
+        self.resting: tuple[Array, Array] | None = None
+        """pose while at rest"""
+
+
+class PlannerState:
+    """Owned by the loop."""
+
+    __slots__ = ("first", "frames", "inner")
+
+    def __init__(self, inner: Any, first: Array) -> None:
+        self.inner, self.first = inner, first
+        self.frames: dict[str, PlannedFrame] = {}
+
+
+class HarmonicPlanner(ReferenceSource[PlannerState]):
+    """Smooths the targets of another source; each frame starts where the robot is.
+
+    Whenever a target of the inner source differs from the last one, motion goes over to it: from rest along a
+    straight line with a half cosine over time; on the way by superposition (see `superposition`), so that it never
+    leaves the hull of its start and the targets so far. Wrench, tuning and posture of the inner reference pass
+    unchanged; a change of the target that comes sooner than 20 ms after another one waits for so long, the latest wins.
+
+    Args:
+        inner: targets; the velocities that it gives are ignored.
+        place: forward kinematics, `robot.placement`; called once per frame, when it first appears.
+        limits: of speed and acceleration.
+        workspaces: frame → where its targets may lie. One beyond is brought back to the surface; by how much is in the
+            channel `planner/FRAME/clamped` (3,) m of `Reference.diagnostics`.
+    """
+
+    def __init__(
+        self,
+        inner: ReferenceSource[Any],
+        place: Place,
+        limits: PlannerLimits | None = None,
+        workspaces: Mapping[str, Workspace] | None = None,
+    ) -> None:
+        self.inner, self.limits, self._place = inner, limits or PlannerLimits(), place
+        self.workspaces = dict(workspaces or {})
+
+    def init(self, estimate: Estimate) -> PlannerState:
+        return PlannerState(self.inner.init(estimate), np.array(estimate.q))
+
+    def step(self, estimate: Estimate, state: PlannerState) -> tuple[Reference, PlannerState]:
+        """The inner reference with planned poses and twists. Raises SignalError for a target that is not finite."""
+        goal, state.inner = self.inner.step(estimate, state.inner)
+        tasks = tuple([self._planned(task, estimate, state) for task in goal.tasks])
+        diagnostics = goal.diagnostics
+        if self.workspaces:
+            clamped = {f"planner/{name}/clamped": frame.clamped for name, frame in state.frames.items()}
+            diagnostics = {**diagnostics, **clamped}
+        return Reference(goal.time, tasks, goal.posture, goal.phase, goal.preview, goal.tuning, diagnostics), state
+
+    def _planned(self, task: TaskReference, estimate: Estimate, state: PlannerState) -> TaskReference:
+        frame, time = state.frames.get(task.frame), estimate.time
+        if frame is None:
+            frame = state.frames[task.frame] = PlannedFrame(*self._place(np.array(estimate.q), task.frame))
+        if self._is_new(task, frame) and time >= frame.taken + _STEADY:
+            self._retarget(task, frame, time)
+        pose, velocity, acceleration = _now(frame, time)
+        rotation = None if task.rotation is None else pose[1]
+        return TaskReference(task.frame, pose[0], rotation, velocity, acceleration, task.wrench, task.tuning)
+
+    @staticmethod
+    def _is_new(task: TaskReference, frame: PlannedFrame) -> bool:
+        if task.position is not frame.position and not _same(task.position, frame.position):
+            return True
+        return (
+            task.rotation is not None
+            and task.rotation is not frame.rotation
+            and not _same(task.rotation, frame.rotation)
+        )
+
+    def _retarget(self, task: TaskReference, frame: PlannedFrame, time: float) -> None:
+        """Takes a new target; position and orientation arrive together where they start together."""
+        if not np.isfinite(task.position).all() or (task.rotation is not None and not np.isfinite(task.rotation).all()):
+            raise SignalError(f"the target of frame {task.frame!r} is not finite: {task.position.tolist()}")
+        workspace = self.workspaces.get(task.frame)
+        allowed = task.position if workspace is None else workspace.nearest(task.position)
+        frame.clamped = task.position - allowed
+        target = _floats(allowed)
+        turn = frame.turn.target
+        if task.rotation is not None:
+            if not frame.turn.folded(time).pieces:
+                frame.base, frame.turn = _rotation(frame, time), Plan((0.0, 0.0, 0.0))
+            turn = _nearest(log3(task.rotation @ frame.base.T), frame.turn.target)
+            frame.rotation = task.rotation
+        way = float(np.linalg.norm(np.subtract(target, frame.linear.target)))
+        angle = float(np.linalg.norm(np.subtract(turn, frame.turn.target)))
+        least = max(self.limits.linear.duration(way), self.limits.angular.duration(angle))
+        frame.linear = frame.linear.retargeted(time, target, self.limits.linear, least)
+        frame.turn = frame.turn.retargeted(time, turn, self.limits.angular, least)
+        frame.position, frame.taken, frame.resting = task.position, time, None
+
+
+def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, Array]:
+    """Pose, twist (6,) and its derivative (6,) of a planned frame."""
+    if frame.resting is not None:
+        return frame.resting, _REST, _REST
+    frame.linear, frame.turn = frame.linear.folded(time), frame.turn.folded(time)
+    position, rate, push = frame.linear.at(time)
+    rotation = _rotation(frame, time)
+    velocity, acceleration = np.array((*rate, 0.0, 0.0, 0.0)), np.array((*push, 0.0, 0.0, 0.0))
+    pose = (np.array(position), rotation)
+    if frame.turn.pieces:
+        before, now, after = (_angular_velocity(frame.turn, time + s) for s in (-_ANGULAR_STEP, 0.0, _ANGULAR_STEP))
+        velocity[3:], acceleration[3:] = now, (after - before) / (2.0 * _ANGULAR_STEP)
+    elif not frame.linear.pieces:
+        frame.resting = pose
+    return pose, velocity, acceleration
+
+
+def _rotation(frame: PlannedFrame, time: float) -> Array:
+    turn = frame.turn.at(time).position
+    return exp3(turn) @ frame.base if any(turn) else frame.base
+
+
+def _angular_velocity(plan: Plan, time: float) -> Array:
+    """World axes (3,), rad/s: ω = J_l(r) ṙ of the rotation vector r."""
+    r, rate, _ = plan.at(time)
+    return _left_jacobian(r) @ np.array(rate)
+
+
+def _left_jacobian(r: npt.ArrayLike) -> Array:
+    """J_l(r) (3, 3), with ω = J_l(r) ṙ. Source: Chirikjian, Stochastic Models, vol. 2, eq. 10.86."""
+    angle = float(np.linalg.norm(r))
+    cross = skew(r)
+    if angle < 1e-4:
+        return np.eye(3) + 0.5 * cross + cross @ cross / 6.0
+    first, second = (1.0 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3
+    return np.eye(3) + first * cross + second * cross @ cross
+
+
+def _nearest(turn: Array, last: tuple[float, ...]) -> tuple[float, ...]:
+    """Of the rotation vectors of one rotation, r and r − 2π r/|r|, the one nearer to the last target."""
+    angle = float(np.linalg.norm(turn))
+    if angle < 1e-9:
+        return _floats(turn)
+    other = turn * (1.0 - 2.0 * np.pi / angle)
+    return _floats(turn if np.linalg.norm(turn - last) <= np.linalg.norm(other - last) else other)
+
+
+def _same(a: Array, b: Array | None) -> bool:
+    return b is not None and bool((a == b).all())
+
+
+def _floats(values: Array) -> tuple[float, ...]:
+    return tuple(values.tolist())

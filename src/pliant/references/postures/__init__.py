@@ -1,0 +1,1 @@
+"""Joint configurations that go with the motion of a frame."""

@@ -1,0 +1,1 @@
+"""Trajectories: pure functions of time."""

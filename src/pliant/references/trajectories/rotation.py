@@ -1,0 +1,100 @@
+"""Orientations as functions of time."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+import numpy as np
+
+from pliant.errors import ConfigError
+from pliant.references.trajectories.spline import Spline
+from pliant.references.trajectories.time_scaling import Warp
+from pliant.references.trajectories.trajectory import vector
+from pliant.spatial import Array
+
+
+class Orientation(NamedTuple):
+    """An orientation at one instant. Arrays may be shared: do not write into them."""
+
+    rotation: Array
+    """R_world_frame (3, 3)"""
+    velocity: Array
+    """(3,) angular velocity, world axes, rad/s"""
+    acceleration: Array
+    """(3,) rad/s²"""
+
+
+class Turning(ABC):
+    """A rotation that moves with time."""
+
+    @abstractmethod
+    def at(self, time: float) -> Orientation:
+        """Rotation, angular velocity and angular acceleration at a time in s."""
+
+
+class Fixed(Turning):
+    """One orientation for ever. Args: rotation: R_world_frame (3, 3)."""
+
+    def __init__(self, rotation: Array) -> None:
+        R = np.array(rotation, dtype=np.float64)
+        if R.shape != (3, 3) or not np.allclose(R @ R.T, np.eye(3), atol=1e-6) or np.linalg.det(R) < 0.0:
+            raise ConfigError(f"a rotation must be a proper orthogonal (3, 3) matrix, got {R.tolist()}")
+        R.setflags(write=False)
+        zero = vector(np.zeros(3), "zero")
+        self._orientation = Orientation(R, zero, zero)
+
+    def at(self, time: float) -> Orientation:
+        return self._orientation
+
+
+class WarpedTurning(Turning):
+    """A turning whose clock runs differently."""
+
+    def __init__(self, inner: Turning, warp: Warp) -> None:
+        self.inner, self.warp = inner, warp
+
+    def at(self, time: float) -> Orientation:
+        phase, rate, acceleration = self.warp.at(time)
+        R, w, a = self.inner.at(phase)
+        return Orientation(R, w * rate, a * (rate * rate) + w * acceleration)
+
+
+class QuaternionSpline(Turning):
+    """Cubic spline through quaternions, brought to unit length at every instant.
+
+    Args:
+        times: (m,) s, increasing.
+        quaternions: (m, 4), scalar first, any length above zero and either sign.
+    """
+
+    def __init__(self, times: Array, quaternions: Array) -> None:
+        unit = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
+        turns = np.concatenate([[1.0], np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0.0, -1.0, 1.0)])
+        # q and −q are one rotation: take the sign that keeps the path short
+        self._spline = Spline(times, unit * np.cumprod(turns)[:, None])
+
+    def at(self, time: float) -> Orientation:
+        q, q_dot, q_ddot = self._spline.at(time)
+        inverse = q * (1.0, -1.0, -1.0, -1.0) / float(q @ q)
+        spin = _product(q_dot, inverse)  # scalar part: change of length; vector part: half the angular velocity
+        change = _product(q_ddot, inverse) - _product(spin, spin)
+        return Orientation(_matrix(q), 2.0 * spin[1:], 2.0 * change[1:])
+
+
+def _product(a: Array, b: Array) -> Array:
+    """Hamilton product of quaternions (4,), scalar first."""
+    scalar = a[0] * b[0] - a[1:] @ b[1:]
+    return np.concatenate([[scalar], a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])])
+
+
+def _matrix(q: Array) -> Array:
+    """Rotation matrix (3, 3) of a quaternion (4,) of any length, scalar first."""
+    w, x, y, z = (q / np.sqrt(q @ q)).tolist()
+    return np.array(
+        (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+        )
+    )

@@ -1,0 +1,94 @@
+"""Cubic splines through samples: two continuous derivatives, evaluated in a few microseconds."""
+
+from __future__ import annotations
+
+import bisect
+
+import numpy as np
+
+from pliant.references.trajectories.trajectory import Point, Trajectory
+from pliant.spatial import Array
+
+
+class Spline(Trajectory):
+    """The cubic spline through samples. Its end slopes are those of the cubics through the first and last four samples.
+
+    Before the first sample the first value is held, after the last one the last.
+
+    Args:
+        times: (m,) s, increasing, m ≥ 2.
+        values: (m, k).
+    """
+
+    def __init__(self, times: Array, values: Array) -> None:
+        slopes = _spline_slopes(times, values)
+        h = np.diff(times)[:, None]
+        chord = np.diff(values, axis=0) / h
+        c_2 = (3.0 * chord - 2.0 * slopes[:-1] - slopes[1:]) / h
+        c_3 = (slopes[:-1] + slopes[1:] - 2.0 * chord) / h**2
+        self._pieces = list(_with_derivatives(values[:-1], slopes[:-1], c_2, c_3))
+        self._last_piece = len(self._pieces) - 1
+        self._times: list[float] = times.tolist()
+        steps = np.diff(times)
+        self._step = float(steps[0]) if np.allclose(steps, steps[0], rtol=1e-9, atol=0.0) else 0.0
+        self.size, self.duration = int(values.shape[1]), float(times[-1])
+        k = self.size
+        self._value, self._rate, self._acceleration = slice(0, k), slice(k, 2 * k), slice(2 * k, 3 * k)
+        zero = np.zeros(k)
+        self._first = Point(values[0].copy(), zero, zero)
+        self._last = Point(values[-1].copy(), zero, zero)
+
+    def at(self, time: float) -> Point:
+        times = self._times
+        if time > times[-1]:
+            return self._last
+        if time < times[0]:
+            return self._first
+        if self._step > 0.0:
+            index = min(int((time - times[0]) / self._step), self._last_piece)
+        else:
+            index = min(bisect.bisect_right(times, time) - 1, self._last_piece)
+        t = time - times[index]
+        row = np.array((1.0, t, t * t, t * t * t)).dot(self._pieces[index])  # (4,) @ (4, 3k)
+        return Point(row[self._value], row[self._rate], row[self._acceleration])
+
+
+def _with_derivatives(c_0: Array, c_1: Array, c_2: Array, c_3: Array) -> Array:
+    """Coefficients (m-1, 4, 3k) of value, rate and acceleration side by side: one product gives all three."""
+    zero = np.zeros_like(c_0)
+    value = np.stack([c_0, c_1, c_2, c_3], axis=1)
+    rate = np.stack([c_1, 2.0 * c_2, 3.0 * c_3, zero], axis=1)
+    acceleration = np.stack([2.0 * c_2, 6.0 * c_3, zero, zero], axis=1)
+    return np.concatenate([value, rate, acceleration], axis=2)
+
+
+def _spline_slopes(times: Array, values: Array) -> Array:
+    """Slopes (m, k) at the samples that make the second derivative continuous (tridiagonal system, ends given)."""
+    count = times.shape[0]
+    if count == 2:
+        return np.repeat(np.diff(values, axis=0) / np.diff(times)[:, None], 2, axis=0)
+    h = np.diff(times)
+    chord = np.diff(values, axis=0) / h[:, None]
+    slopes = np.empty_like(values)
+    slopes[0] = _end_slope(times[:4], values[:4])
+    slopes[-1] = _end_slope(times[-1:-5:-1], values[-1:-5:-1])
+    # h_i d_{i-1} + 2 (h_{i-1} + h_i) d_i + h_{i-1} d_{i+1} = 3 (h_i c_{i-1} + h_{i-1} c_i), eliminated forwards
+    right = 3.0 * (h[1:, None] * chord[:-1] + h[:-1, None] * chord[1:])
+    right[0] -= h[1] * slopes[0]
+    right[-1] -= h[-2] * slopes[-1]
+    diagonal = 2.0 * (h[:-1] + h[1:])
+    for i in range(1, count - 2):
+        factor = h[i + 1] / diagonal[i - 1]
+        diagonal[i] -= factor * h[i - 1]
+        right[i] -= factor * right[i - 1]
+    slopes[-2] = right[-1] / diagonal[-1]
+    for i in range(count - 4, -1, -1):
+        slopes[i + 1] = (right[i] - h[i] * slopes[i + 2]) / diagonal[i]
+    return slopes
+
+
+def _end_slope(times: Array, values: Array) -> Array:
+    """Slope (k,) at the first of up to four samples, of the polynomial through them."""
+    t = times - times[0]
+    weights = np.linalg.solve(np.vander(t, increasing=True).T, np.eye(t.shape[0])[1])
+    return weights @ values

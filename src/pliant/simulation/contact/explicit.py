@@ -1,0 +1,198 @@
+"""Stiff contacts with stiction, computed as forces between the physics engine's two half steps.
+
+`F_n = max(0, s(p/w)(K p + D ṗ))` with s a smoothstep over the transition w, and a bristle that sticks below the static
+friction limit ([HapFIC] sec. III). The law itself and its loop are compiled (cpp/contact).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from pliant._contact import BRISTLE_SIZE, ContactLoop
+from pliant.errors import ConfigError, RunFailedError
+from pliant.simulation.contact.material import ContactMaterial, require_stable_step
+from pliant.simulation.scene import Surface
+from pliant.spatial import Array
+
+
+@dataclass(frozen=True)
+class ContactPair:
+    """Two geoms that can touch: the first a sphere, capsule or box, the second a plane, box or sphere."""
+
+    geom_a: str
+    geom_b: str
+    material: ContactMaterial
+
+
+@dataclass(slots=True)
+class ContactState:
+    """Contacts of one world. Consumed by `advance`."""
+
+    loop: ContactLoop
+    bristles: Array
+    """(slots, 5) deflection (3) m, friction coefficient, sliding or not"""
+    push: Array
+    """(nbody, 6) force and torque at each body's centre of mass from elsewhere, N and N·m"""
+    force: Array
+    """(slots, 3) on the pair's first geom, world axes, N"""
+    point: Array
+    """(slots, 3) where it acts, world, m"""
+    penetration: Array
+    """(slots,) m, above zero where the shapes overlap"""
+
+
+class ExplicitContacts:
+    """The contacts of a model.
+
+    Args:
+        model: compiled, with the geoms of all pairs; its own contacts between them switched off.
+        pairs: what can touch what.
+
+    Raises:
+        ConfigError: a pair of shapes without a law.
+    """
+
+    def __init__(self, model: mujoco.MjModel, pairs: Sequence[ContactPair]) -> None:
+        self.model = model
+        self.pairs = tuple(pairs)
+        self._geoms = [(model.geom(pair.geom_a).id, model.geom(pair.geom_b).id) for pair in self.pairs]
+        self._slots = self._fill(ContactLoop(model, mujoco.MjData(model), *_half_steps()))
+
+    def init(self, data: mujoco.MjData) -> ContactState:
+        """Untouched contacts of a world, at the forces of its present configuration."""
+        loop = ContactLoop(self.model, data, *_half_steps())
+        self._fill(loop)
+        n = loop.slots
+        state = ContactState(
+            loop=loop,
+            bristles=np.zeros((n, BRISTLE_SIZE)),
+            push=np.zeros((self.model.nbody, 6)),
+            force=np.zeros((n, 3)),
+            point=np.zeros((n, 3)),
+            penetration=np.zeros(n),
+        )
+        for pair, slots in zip(self.pairs, self._slots, strict=True):
+            state.bristles[slots, 3] = pair.material.mu_static
+        mujoco.mj_step1(self.model, data)
+        self.refresh(state)
+        return state
+
+    def advance(self, state: ContactState, steps: int) -> None:
+        """Makes physics steps. Forces follow every one of them.
+
+        Raises:
+            RunFailedError: a force or a velocity is not finite.
+        """
+        dt = float(self.model.opt.timestep)
+        done = state.loop.advance(steps, dt, state.push, state.bristles, state.force, state.point, state.penetration)
+        if done < steps:
+            raise RunFailedError(self._blown_up(state, dt))
+
+    def refresh(self, state: ContactState) -> None:
+        """Forces of the present configuration, without letting time pass."""
+        state.loop.evaluate(0.0, state.push, state.bristles, state.force, state.point, state.penetration)
+
+    def wrench(self, state: ContactState, index: int, about: Array) -> Array:
+        """Wrench (6,) on the first geom of pair number `index`, about a point (3,), world axes."""
+        slots = self._slots[index]
+        force, lever = state.force[slots], state.point[slots] - about
+        return np.concatenate([force.sum(axis=0), np.cross(lever, force).sum(axis=0)])
+
+    def force_on(self, state: ContactState, geom: str) -> Array:
+        """Sum of all contact forces on a geom (3,), N, world axes."""
+        total = np.zeros(3)
+        for pair, slots in zip(self.pairs, self._slots, strict=True):
+            sign = (pair.geom_a == geom) - (pair.geom_b == geom)
+            total += sign * state.force[slots].sum(axis=0)
+        return total
+
+    def touching(self, state: ContactState, index: int) -> bool:
+        """Whether pair number `index` pushes."""
+        return bool(np.any(state.force[self._slots[index]]))
+
+    def _fill(self, loop: ContactLoop) -> list[slice]:
+        return [self._add(loop, *geoms, pair) for geoms, pair in zip(self._geoms, self.pairs, strict=True)]
+
+    def _add(self, loop: ContactLoop, geom_a: int, geom_b: int, pair: ContactPair) -> slice:
+        try:
+            first, count = loop.add_pair(geom_a, geom_b, pair.material.row())
+        except ValueError as error:
+            raise ConfigError(
+                f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule or box"
+                " against a plane or a box, a sphere or capsule against a sphere"
+            ) from error
+        return slice(first, first + count)
+
+    def _blown_up(self, state: ContactState, dt: float) -> str:
+        worst = int(np.argmax(np.where(np.isfinite(state.penetration), state.penetration, np.inf)))
+        index = next(i for i, slots in enumerate(self._slots) if slots.start <= worst < slots.stop)
+        pair = self.pairs[index]
+        return (
+            f"the simulation of contacts diverged (deepest: {pair.geom_a!r} in {pair.geom_b!r}, K ="
+            f" {pair.material.stiffness:g} N/m, D = {pair.material.damping:g} N s/m); the physics step of {dt:g} s"
+            " may be too long, or the command unstable"
+        )
+
+
+def explicit_contacts(
+    model: mujoco.MjModel, start: Array, pairs: Sequence[tuple[str, str, Surface]]
+) -> ExplicitContacts:
+    """The contacts of a model, checked for the physics step they need.
+
+    Args:
+        model: compiled; `timestep` set.
+        start: (n,) configuration of the robot, whose joints come first.
+        pairs: two geoms and what they feel like to each other.
+
+    Raises:
+        ConfigError: a pair of shapes without a law, or a physics step that is too long for a contact.
+    """
+    data = mujoco.MjData(model)
+    data.qpos[: start.shape[0]] = start
+    mujoco.mj_forward(model, data)
+    made: list[ContactPair] = []
+    for a, b, surface in pairs:
+        inverse_mass = _inverse_mass(model, data, model.geom(a).id, presses=True)
+        inverse_mass += _inverse_mass(model, data, model.geom(b).id, presses=False)
+        material = ContactMaterial.of(surface, inverse_mass)
+        require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
+        made.append(ContactPair(a, b, material))
+    return ExplicitContacts(model, made)
+
+
+def _inverse_mass(model: mujoco.MjModel, data: mujoco.MjData, geom: int, presses: bool) -> float:
+    """Largest eigenvalue of J M⁻¹ Jᵀ at a geom's centre, 1/kg; of a box that presses, of its fastest mode on four
+    corners."""
+    body = int(model.geom_bodyid[geom])
+    if model.body_weldid[body] == 0:
+        return 0.0  # part of the world
+    if presses and model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_BOX:
+        half2 = np.asarray(model.geom_size[geom]) ** 2
+        rocking = max(half2[i] / (half2[i] + half2[j]) for i in range(3) for j in range(3) if i != j)
+        return 4.0 * max(1.0, 3.0 * float(rocking)) / float(model.body_mass[body])
+    J = np.zeros((3, model.nv))
+    mujoco.mj_jac(model, data, J, None, data.geom_xpos[geom], body)
+    M = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, M)
+    return float(np.linalg.eigvalsh(J @ np.linalg.solve(M, J.T))[-1])
+
+
+@functools.cache
+def _half_steps() -> tuple[int, int]:
+    """Addresses of mj_step1 and mj_step2 in the library that the mujoco package has loaded."""
+    folder = Path(str(mujoco.__file__)).parent
+    names = sorted([*folder.glob("libmujoco.so*"), *folder.glob("libmujoco*.dylib"), *folder.glob("mujoco.dll")])
+    if not names:
+        raise RunFailedError(f"no MuJoCo library in {folder}; reinstall the mujoco package")
+    library = ctypes.CDLL(str(names[0]))
+    first, second = (ctypes.cast(getattr(library, name), ctypes.c_void_p).value for name in ("mj_step1", "mj_step2"))
+    assert first is not None
+    assert second is not None
+    return first, second

@@ -1,0 +1,1 @@
+"""What is imperfect about a robot: sensors, drives, gears, computation time."""

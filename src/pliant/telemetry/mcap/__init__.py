@@ -1,0 +1,1 @@
+"""Logs as MCAP files with ROS 2 messages."""

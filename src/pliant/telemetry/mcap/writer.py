@@ -1,0 +1,252 @@
+"""Writes blocks of equally built ticks as an MCAP file, a chunk per block.
+
+The mcap package's own writer takes one message per call, which costs more than the control loop that it records. Here
+a block becomes one array of bytes, with one row per tick, into which the columns are copied. Nothing in the file
+depends on the wall clock.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import BinaryIO
+
+import mcap
+import mcap_ros2
+import numpy as np
+import numpy.typing as npt
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+
+from pliant.spatial import Array
+from pliant.telemetry.mcap.messages import DEFINITIONS, encode
+from pliant.telemetry.mcap.topics import Topic
+
+_MAGIC = b"\x89MCAP0\r\n"
+_MESSAGE = struct.Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
+_ENVELOPE = 22  # bytes of a message record before its data, counted by its length field
+_ZSTD_LEVEL = 1  # numbers with noise hardly compress: speed counts
+_LIBRARY = f"pliant with mcap {mcap.__version__}, mcap-ros2-support {mcap_ros2.__version__}"
+
+
+@dataclass
+class _Chunk:
+    """What goes into the chunk under construction."""
+
+    head: RecordBuilder = field(default_factory=RecordBuilder)
+    """schema and channel records that it introduces"""
+    index: dict[int, npt.NDArray[np.uint64]] = field(default_factory=dict)
+    """channel → (n, 2) log time and offset in the chunk"""
+
+
+class McapFile:
+    """An MCAP file that grows by blocks. Not for use by several threads at once."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        """Starts a file. Args: stream: open for writing, at its start; it stays open at `finish`."""
+        self._stream = stream
+        self._at = 0
+        self._schemas: dict[str, Schema] = {}
+        self._channels: dict[tuple[str, str, bytes], Channel] = {}
+        self._counts: dict[int, int] = {}
+        self._sequence: dict[int, int] = {}
+        self._chunks: list[ChunkIndex] = []
+        self._metadata: list[MetadataIndex] = []
+        self._compressor = zstandard.ZstdCompressor(level=_ZSTD_LEVEL)
+        self._write(_MAGIC)
+        self._write(_bytes(Header("ros2", _LIBRARY)))
+
+    def add_metadata(self, name: str, data: Mapping[str, str]) -> None:
+        """Adds a metadata record."""
+        record = _bytes(Metadata(name, dict(data)))
+        self._metadata.append(MetadataIndex(self._at, len(record), name))
+        self._write(record)
+
+    def add_block(self, topics: Sequence[Topic], times: npt.NDArray[np.int64], columns: Mapping[str, Array]) -> None:
+        """Writes one message per topic and tick.
+
+        Args:
+            topics: in the order in which a tick's messages are written.
+            times: (n,) log time in ns since the start of the run.
+            columns: channel → (n, …) values.
+        """
+        if not len(times):
+            return
+        chunk = _Chunk()
+        ids = [self._channel(t.name, t.datatype, t.template.data, t.metadata, chunk) for t in topics]
+        head = bytes(chunk.head.end())
+        rows, starts = self._rows(topics, ids, times, columns)
+        first = len(head) + np.arange(len(times), dtype=np.uint64) * np.uint64(rows.shape[1])
+        for channel, start in zip(ids, starts, strict=True):
+            chunk.index[channel] = np.column_stack((times.astype(np.uint64), first + np.uint64(start)))
+        self._add_chunk(head + rows.tobytes(), chunk.index, int(times.min()), int(times.max()))
+
+    def add_text(self, topic: str, time: int, text: str) -> None:
+        """Writes one std_msgs/String at a log time in ns."""
+        chunk = _Chunk()
+        channel = self._channel(topic, "std_msgs/msg/String", b"", dict, chunk)
+        head = bytes(chunk.head.end())
+        data = encode("std_msgs/msg/String", {"data": text})
+        sequence = self._next(channel, 1)
+        record = _MESSAGE.pack(Opcode.MESSAGE, _ENVELOPE + len(data), channel, sequence, time, time) + data
+        self._add_chunk(head + record, {channel: np.array([[time, len(head)]], dtype=np.uint64)}, time, time)
+
+    def finish(self) -> None:
+        """Writes the index. Without it the file is readable up to its last block."""
+        self._write(_bytes(DataEnd(0)))
+        start = self._at
+        summary, offsets = b"", b""
+        for opcode, records in (
+            (Opcode.SCHEMA, list(self._schemas.values())),
+            (Opcode.CHANNEL, list(self._channels.values())),
+            (Opcode.STATISTICS, [self._statistics()]),
+            (Opcode.CHUNK_INDEX, self._chunks),
+            (Opcode.METADATA_INDEX, self._metadata),
+        ):
+            group = b"".join(_bytes(record) for record in records)
+            if group:
+                offsets += _bytes(SummaryOffset(opcode, start + len(summary), len(group)))
+            summary += group
+        offset_start = start + len(summary)
+        head = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offset_start)
+        crc = zlib.crc32(head, zlib.crc32(summary + offsets))
+        self._write(summary + offsets + _bytes(Footer(start, offset_start, crc)) + _MAGIC)
+        self._stream.flush()
+
+    # ------------------------------------------------------------------ parts
+
+    def _write(self, data: bytes) -> None:
+        self._stream.write(data)
+        self._at += len(data)
+
+    def _channel(
+        self, topic: str, datatype: str, data: bytes, metadata: Callable[[], dict[str, str]], chunk: _Chunk
+    ) -> int:
+        """Id of a topic's channel. A topic whose messages change their layout gets a second channel, as MCAP allows."""
+        key = (topic, datatype, data)
+        if key in self._channels:
+            return self._channels[key].id
+        if datatype not in self._schemas:
+            schema = Schema(len(self._schemas) + 1, DEFINITIONS[datatype].encode(), "ros2msg", datatype)
+            self._schemas[datatype] = schema
+            schema.write(chunk.head)
+        channel = Channel(len(self._channels) + 1, topic, "cdr", metadata(), self._schemas[datatype].id)
+        self._channels[key] = channel
+        channel.write(chunk.head)
+        return channel.id
+
+    def _next(self, channel: int, count: int) -> int:
+        start = self._sequence.get(channel, 0)
+        self._sequence[channel] = start + count
+        self._counts[channel] = self._counts.get(channel, 0) + count
+        return start
+
+    def _rows(
+        self, topics: Sequence[Topic], ids: Sequence[int], times: npt.NDArray[np.int64], columns: Mapping[str, Array]
+    ) -> tuple[npt.NDArray[np.uint8], list[int]]:
+        """(n, bytes per tick) message records, and the byte at which each topic's record starts in a row."""
+        n = len(times)
+        row, starts = bytearray(), list[int]()
+        for topic, channel in zip(topics, ids, strict=True):
+            starts.append(len(row))
+            row += _MESSAGE.pack(Opcode.MESSAGE, _ENVELOPE + len(topic.template.data), channel, 0, 0, 0)
+            row += topic.template.data
+        rows = np.tile(np.frombuffer(bytes(row), dtype=np.uint8), (n, 1))
+        seconds, rest = np.divmod(times, 1_000_000_000)
+        for topic, channel, start in zip(topics, ids, starts, strict=True):
+            sequence = self._next(channel, n) + np.arange(n)
+            _put(rows, start + 11, sequence.astype("<u4"))
+            _put(rows, start + 15, times.astype("<u8"))
+            _put(rows, start + 23, times.astype("<u8"))
+            body = start + _MESSAGE.size
+            if topic.template.stamp is not None:
+                _put(rows, body + topic.template.stamp, seconds.astype("<i4"))
+                _put(rows, body + topic.template.stamp + 4, rest.astype("<u4"))
+            slot = 0
+            for channel_, order in topic.parts:
+                values = columns[channel_.name].reshape(n, -1)[:, order]
+                slot += _put_numbers(rows, body, topic.template.offsets[slot : slot + len(order)], values)
+        return rows, starts
+
+    def _add_chunk(self, data: bytes, index: Mapping[int, npt.NDArray[np.uint64]], first: int, last: int) -> None:
+        packed = self._compressor.compress(data)
+        record = _bytes(Chunk("zstd", packed, last, first, zlib.crc32(data), len(data)))
+        chunk_start = self._at
+        self._write(record)
+        offsets: dict[int, int] = {}
+        index_start = self._at
+        for channel, entries in index.items():
+            offsets[channel] = self._at
+            body = entries.astype("<u8").tobytes()
+            self._write(struct.pack("<BQHI", Opcode.MESSAGE_INDEX, 6 + len(body), channel, len(body)) + body)
+        self._chunks.append(
+            ChunkIndex(
+                chunk_length=len(record),
+                chunk_start_offset=chunk_start,
+                compression="zstd",
+                compressed_size=len(packed),
+                message_end_time=last,
+                message_index_length=self._at - index_start,
+                message_index_offsets=offsets,
+                message_start_time=first,
+                uncompressed_size=len(data),
+            )
+        )
+        self._stream.flush()  # what is written survives the process
+
+    def _statistics(self) -> Statistics:
+        return Statistics(
+            attachment_count=0,
+            channel_count=len(self._channels),
+            channel_message_counts=dict(self._counts),
+            chunk_count=len(self._chunks),
+            message_count=sum(self._counts.values()),
+            message_end_time=max((chunk.message_end_time for chunk in self._chunks), default=0),
+            message_start_time=min((chunk.message_start_time for chunk in self._chunks), default=0),
+            metadata_count=len(self._metadata),
+            schema_count=len(self._schemas),
+        )
+
+
+def _bytes(record: McapRecord) -> bytes:
+    builder = RecordBuilder()
+    record.write(builder)
+    return bytes(builder.end())
+
+
+def _put(rows: npt.NDArray[np.uint8], at: int, values: npt.NDArray[np.generic]) -> None:
+    """Writes (n,) values of one type at a byte of each row."""
+    width = values.dtype.itemsize
+    rows[:, at : at + width] = np.ascontiguousarray(values).view(np.uint8).reshape(len(rows), width)
+
+
+def _put_numbers(rows: npt.NDArray[np.uint8], body: int, offsets: Sequence[int], values: Array) -> int:
+    """Writes (n, k) float64 values, neighbours in one go. Returns k."""
+    k = len(offsets)
+    if not k:
+        return 0
+    packed = np.ascontiguousarray(values, dtype="<f8")
+    if offsets[-1] - offsets[0] == 8 * (k - 1):  # offsets only grow: then they are neighbours
+        at = body + offsets[0]
+        rows[:, at : at + 8 * k] = packed.view(np.uint8).reshape(len(rows), 8 * k)
+    else:
+        for column, offset in enumerate(offsets):
+            _put(rows, body + offset, packed[:, column])
+    return k
