@@ -29,7 +29,6 @@ struct ModelData {
     int contact_dim;
     Axes axes;
     Integrator integrator;
-    double surface_rotation[9];
     double torque_bandwidth;   // [Hz]
     double baumgarte_position; // [1/s²]
     double baumgarte_velocity; // [1/s]
@@ -39,6 +38,7 @@ struct NodeData {
     double state_reference[2 * max_joints], state_weight[2 * max_joints];
     double control_reference[max_joints], control_weight[max_joints];
     double torque_gravity_weight[max_joints], control_gravity_weight[max_joints];
+    double task_rotation[9]; // R_world_task
     double translation_reference[3], translation_weight[3];
     double rotation_reference[9], rotation_weight[3];
     double velocity_reference[6], velocity_weight[6];
@@ -91,7 +91,7 @@ struct KernelTable {
                  NodeOutput &);
     double (*time_node)(Engine *, const NodeData &, bool terminal, bool derivatives, const double *x, const double *u,
                         int repetitions);
-    void (*freeze)(Engine *, const double *q);
+    void (*freeze)(Engine *, const double *task_rotation, const double *q);
     void (*set_plan)(Engine *, const double *xs, const double *us);
     void (*get_plan)(const Engine *, double *xs, double *us);
     void (*shift)(Engine *);

@@ -98,7 +98,6 @@ void validate(const ModelData &m) {
     const bool free = m.kind == Kind::free;
     if (free ? m.contact_dim != 0 : m.contact_dim != 1 && m.contact_dim != 3 && m.contact_dim != 6)
         reject("contact_dim must be ", free ? "0 for kind 'free'" : "1, 3 or 6", ", got ", m.contact_dim);
-    if (!is_rotation(m.surface_rotation)) reject("surface_rotation is not a rotation matrix");
     if (!(m.torque_bandwidth > 0)) reject("torque_bandwidth must be positive, got ", m.torque_bandwidth, " Hz");
     if (!(m.baumgarte_position >= 0) || !(m.baumgarte_velocity >= 0)) reject("baumgarte gains must not be negative");
 }
@@ -116,6 +115,7 @@ void validate(const NodeData &d, int index, int dof, const ModelData &model, dou
     check.references("control_reference", d.control_reference, dof);
     check.references("translation_reference", d.translation_reference, 3);
     check.references("velocity_reference", d.velocity_reference, 6);
+    check.rotation("task_rotation", d.task_rotation);
     check.rotation("rotation_reference", d.rotation_reference);
     check.interval("torque", d.torque_lower, d.torque_upper, dof);
     const int m = model.contact_dim;

@@ -88,7 +88,6 @@ class Model:
         contact_dim: int,
         axes: Axes = "world",
         *,
-        surface_rotation: ArrayLike | None = None,
         torque_bandwidth: float = 50.0,
         baumgarte: tuple[float, float] = (0.0, 0.0),
         integrator: Literal["euler", "exponential"] = "euler",
@@ -99,8 +98,7 @@ class Model:
             kind: [FFMPC] sections V-C, III-C, IV-C, no contact, V-B.
             contact_dim: 1 (force along the third contact axis), 3 (force), 6 (force, moment); 0 with kind 'free' only.
             axes: contact axes: 'local' turn with the contact frame, 'world' are aligned with the world, 'surface' are
-                the fixed columns of `surface_rotation`.
-            surface_rotation: (3, 3) R_world_surface, for axes 'surface' only; its third column is the normal.
+                the columns of each node's `task_rotation`.
             torque_bandwidth: [Hz] f_c of 'torque_feedback': α = exp(−2π f_c dt).
             baumgarte: (kp [1/s²], kd [1/s]) of the rigid contact: d(Jv)/dt + kd Jv + kp e = 0.
             integrator: of the force state in 'force_feedback': 'euler' is [FFMPC] eq. 24; 'exponential' is exact for
@@ -138,12 +136,14 @@ class Nodes:
     control_weight: NDArray[np.float64]  # (M, n) on u − reference
     torque_gravity_weight: NDArray[np.float64]  # (M, n) on τ − (g(q) − Jᵀλ); τ = u, or the state τ in torque feedback
     control_gravity_weight: NDArray[np.float64]  # (M, n) on w − (g(q) − Jᵀλ), torque feedback only (eq. 28)
+    task_rotation: NDArray[np.float64]  # (M, 3, 3) R_world_task: axes of translation and velocity costs; with axes
+    # 'surface' of the contact too, the third column being the outward normal
     translation_reference: NDArray[np.float64]  # (M, 3) [m] tool frame in the world
-    translation_weight: NDArray[np.float64]  # (M, 3) world axes
+    translation_weight: NDArray[np.float64]  # (M, 3) task axes
     rotation_reference: NDArray[np.float64]  # (M, 3, 3) R_world_tool
     rotation_weight: NDArray[np.float64]  # (M, 3) on log(R_refᵀ R)
     velocity_reference: NDArray[np.float64]  # (M, 6) [m/s, rad/s] tool frame, LOCAL_WORLD_ALIGNED
-    velocity_weight: NDArray[np.float64]  # (M, 6)
+    velocity_weight: NDArray[np.float64]  # (M, 6) task axes
     force_reference: NDArray[np.float64]  # (M, m) [N, N·m] contact axes
     force_weight: NDArray[np.float64]  # (M, m)
     force_rate_weight: NDArray[np.float64]  # (M, m) on λ̇, force feedback only

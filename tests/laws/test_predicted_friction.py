@@ -40,9 +40,9 @@ class Slider:
             contact_rotation=TILTED if axes == "local" else still,
         )
         self.R = still if axes == "world" else TILTED  # R_world_contact
-        surface = {"surface_rotation": TILTED} if axes == "surface" else {}
         self.dt = dt
-        self.node = _mpc.Node(chain, _mpc.Model("force_feedback", 3, axes, **surface), dt)
+        self.node = _mpc.Node(chain, _mpc.Model("force_feedback", 3, axes), dt)
+        self.node.parameters.task_rotation = self.R if axes == "surface" else still
         self.node.parameters.stiffness, self.node.parameters.damping = (K, K, 3e3), (B, B, 70.0)
         self.node.parameters.sliding_friction = friction
 

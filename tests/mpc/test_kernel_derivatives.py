@@ -88,8 +88,7 @@ def test_random_chains(seed: int, n: int, case: tuple[str, int, str]) -> None:
 @pytest.mark.parametrize("axes", AXES)
 def test_exponential_integrator(dim: int, axes: str) -> None:
     robot = random_chain(7, 11)
-    rotation = {"surface_rotation": np.eye(3)} if axes == "surface" else {}
-    node = _mpc.Node(robot.chain, _mpc.Model("force_feedback", dim, axes, integrator="exponential", **rotation), 3e-3)
+    node = _mpc.Node(robot.chain, _mpc.Model("force_feedback", dim, axes, integrator="exponential"), 3e-3)
     randomise(node.parameters, 2)
     node.freeze(robot.home)
     check_node(node, *random_point(node, robot, 2))

@@ -41,7 +41,6 @@ CASES: list[tuple[str, Callable[[], object]]] = [
     (r"contact_dim must be 1, 3 or 6, got 2", lambda: _mpc.Model("classical", 2)),
     (r"contact_dim must be 0 for kind 'free', got 1", lambda: _mpc.Model("free", 1)),
     (r"axes must be one of local, world, surface, got 'LOCAL'", lambda: _mpc.Model("classical", 1, "LOCAL")),
-    (r"surface_rotation goes with axes 'surface'", lambda: _mpc.Model("classical", 1, "surface")),
     (r"torque_bandwidth must be positive, got 0", lambda: _mpc.Model("torque_feedback", 1, torque_bandwidth=0.0)),
     (r"integrator must be one of euler, exponential", lambda: _mpc.Model("classical", 1, integrator="rk4")),
     (r"horizon must be at least 1, got 0", lambda: _mpc.Solver(one_joint(), _mpc.Model("free", 0), 0, 1e-3)),

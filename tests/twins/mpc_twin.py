@@ -5,7 +5,7 @@ Every quantity is taken from pinocchio's own algorithms, none from the kernel; d
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
@@ -29,7 +29,6 @@ class Twin:
     axes: str
     dt: float
     parameters: _mpc.Nodes
-    surface: Vector = field(default_factory=lambda: np.eye(3))
     bandwidth: float = 50.0  # Hz
     baumgarte: tuple[float, float] = (0.0, 0.0)
 
@@ -43,8 +42,13 @@ class Twin:
     def rows(self, six: Vector) -> Vector:
         """A frame quantity (6, …), in LOCAL or in world axes by `axes`, cut down to the contact's components."""
         if self.axes == "surface":
-            six = np.concatenate([self.surface.T @ six[:3], self.surface.T @ six[3:]])
+            six = self.in_task(six)
         return six[{0: [], 1: [2], 3: [0, 1, 2], 6: range(6)}[self.dim]]
+
+    def in_task(self, six: Vector) -> Vector:
+        """A quantity (6, …) in world axes, in those of the task."""
+        to_task = self.parameters.task_rotation[0].T
+        return np.concatenate([to_task @ six[:3], to_task @ six[3:]])
 
     def kinematics(self, q: Vector, v: Vector) -> tuple[Vector, Vector, Vector]:
         """J (m, n), ẋ = J v (m,), and dJ/dt v (m,)."""
@@ -136,9 +140,9 @@ class Twin:
             (p.control_weight, u - p.control_reference[0]),
             (p.torque_gravity_weight, torque - load),
             (p.control_gravity_weight, (u - load) * (self.kind == "torque_feedback")),
-            (p.translation_weight, placement.translation - p.translation_reference[0]),
+            (p.translation_weight, p.task_rotation[0].T @ (placement.translation - p.translation_reference[0])),
             (p.rotation_weight, pin.log3(p.rotation_reference[0].T @ placement.rotation)),
-            (p.velocity_weight, velocity - p.velocity_reference[0]),
+            (p.velocity_weight, self.in_task(velocity - p.velocity_reference[0])),
             (p.force_weight * on, force - p.force_reference[0]),
             (p.force_rate_weight * on, rate * (self.kind == "force_feedback")),
         ]
@@ -158,7 +162,7 @@ def randomise(p: _mpc.Nodes, seed: int) -> None:
     p.stiffness = rng.uniform(100.0, 1000.0, p.stiffness.shape)
     p.damping = rng.uniform(10.0, 100.0, p.damping.shape)
     p.anchor_translation = rng.normal(size=p.anchor_translation.shape)
-    for name in ("rotation_reference", "anchor_rotation"):
+    for name in ("rotation_reference", "anchor_rotation", "task_rotation"):
         getattr(p, name)[...] = [pin.exp3(rng.normal(size=3)) for _ in range(p.count)]
 
 
@@ -170,14 +174,12 @@ def node_and_twin(
     robot: TestChain, kind: str, dim: int, axes: str, seed: int = 0, dt: float = 3e-3, active: bool = True
 ) -> tuple[_mpc.Node, Twin]:
     """The kernel's node and its twin, sharing random parameters."""
-    surface = pin.exp3(np.random.default_rng(seed).normal(size=3))
-    rotation = {"surface_rotation": surface} if axes == "surface" else {}
     baumgarte = (3.0, 10.0)
-    model = _mpc.Model(kind, dim, axes, baumgarte=baumgarte, torque_bandwidth=40.0, **rotation)
+    model = _mpc.Model(kind, dim, axes, baumgarte=baumgarte, torque_bandwidth=40.0)
     node = _mpc.Node(robot.chain, model, dt)
     randomise(node.parameters, seed)
     node.parameters.contact_active = active
-    return node, Twin(robot, kind, dim, axes, dt, node.parameters, surface, 40.0, baumgarte)
+    return node, Twin(robot, kind, dim, axes, dt, node.parameters, 40.0, baumgarte)
 
 
 def random_point(node: _mpc.Node, robot: TestChain, seed: int) -> tuple[Vector, Vector]:

@@ -43,7 +43,6 @@ ModelData default_model() {
     m.kind = Kind::force_feedback;
     m.contact_dim = 1;
     m.torque_bandwidth = 50;
-    identity(m.surface_rotation);
     return m;
 }
 
@@ -103,7 +102,7 @@ struct PyModel {
 };
 
 inline void init_model(PyModel *self, const std::string &kind, int contact_dim, const std::string &axes,
-                nb::object surface_rotation, double torque_bandwidth, std::pair<double, double> baumgarte,
+                double torque_bandwidth, std::pair<double, double> baumgarte,
                 const std::string &integrator) {
     ModelData m = default_model();
     m.kind = one_of(kind, "kind", kinds);
@@ -113,9 +112,6 @@ inline void init_model(PyModel *self, const std::string &kind, int contact_dim, 
     m.torque_bandwidth = torque_bandwidth;
     m.baumgarte_position = baumgarte.first;
     m.baumgarte_velocity = baumgarte.second;
-    if ((m.axes == Axes::surface) == surface_rotation.is_none())
-        throw std::invalid_argument("surface_rotation goes with axes 'surface' and with no other, got axes '" + axes + "'");
-    if (!surface_rotation.is_none()) read(surface_rotation, "surface_rotation", {3, 3}, m.surface_rotation);
     validate(m);
     new (self) PyModel{m};
 }
@@ -137,7 +133,7 @@ inline void bind_chain_and_model(nb::module_ &m) {
         .def("tool_placement", [](const PyChain &c, nb::handle q) { return c.placement(q, false); }, "q"_a);
     nb::class_<PyModel>(m, "Model")
         .def("__init__", &init_model, "kind"_a, "contact_dim"_a, "axes"_a = "world", nb::kw_only(),
-             "surface_rotation"_a = nb::none(), "torque_bandwidth"_a = 50.0,
+             "torque_bandwidth"_a = 50.0,
              "baumgarte"_a = std::pair<double, double>(0.0, 0.0), "integrator"_a = "euler")
         .def_prop_ro("kind", [](const PyModel &s) { return kinds[size_t(s.data.kind)].first; })
         .def_prop_ro("contact_dim", [](const PyModel &s) { return s.data.contact_dim; })

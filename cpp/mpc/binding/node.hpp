@@ -59,7 +59,7 @@ struct PyNode {
     void freeze(nb::handle q) const {
         std::vector<double> joints(n);
         read(q, "q", {n}, joints.data());
-        handle.table->freeze(handle.engine, joints.data());
+        handle.table->freeze(handle.engine, data().task_rotation, joints.data());
     }
     double benchmark(nb::handle x, nb::handle u, int repetitions, bool derivatives) const {
         std::vector<double> state(nx), control(n);

@@ -15,6 +15,7 @@ struct PyNodes {
         const double inf = std::numeric_limits<double>::infinity();
         for (NodeData &d : data) {
             d = NodeData{};
+            identity(d.task_rotation);
             identity(d.rotation_reference);
             identity(d.anchor_rotation);
             for (int i = 0; i < max_joints; ++i) {
@@ -97,6 +98,7 @@ inline void bind_nodes(nb::module_ &m) {
     def_array(c, "control_weight", &NodeData::control_weight, joints);
     def_array(c, "torque_gravity_weight", &NodeData::torque_gravity_weight, joints);
     def_array(c, "control_gravity_weight", &NodeData::control_gravity_weight, joints);
+    def_array(c, "task_rotation", &NodeData::task_rotation, rotation);
     def_array(c, "translation_reference", &NodeData::translation_reference, three);
     def_array(c, "translation_weight", &NodeData::translation_weight, three);
     def_array(c, "rotation_reference", &NodeData::rotation_reference, rotation);

@@ -1,6 +1,6 @@
 // The contact seen from the joints: Jacobian, velocity and acceleration in the contact's axes, and their derivatives.
 //
-// Axes fixed in space (world, surface): ẋ = R_cᵀ ṗ, ẍ = R_cᵀ p̈. Axes that turn with the frame (local): ẋ = Rᵀ ṗ and
+// Axes fixed in space (world, surface: those of the node's task): ẋ = R_cᵀ ṗ, ẍ = R_cᵀ p̈. Axes that turn with the frame (local): ẋ = Rᵀ ṗ and
 // ẍ = d(Jv)/dt = Rᵀ (p̈ − ω × ṗ), the spatial acceleration. Rotational components (dimension 6): Rᵀω and its rate.
 #pragma once
 #include "dynamics.hpp"
@@ -45,12 +45,13 @@ PLIANT_INLINE SpatialVec contact_acceleration(const Contact &c, const SpatialVec
 }
 
 template <int J>
-[[gnu::noinline]] void make_contact(const Chain &chain, const ModelData &model, const Kinematics &kin,
+[[gnu::noinline]] void make_contact(const Chain &chain, const ModelData &model, const Mat &task, const Kinematics &kin,
                                     const Velocities &vel, const Dynamics &d, int dim, Contact &c) {
     const Frame frame = frame_on_last_link<J>(kin, chain.contact_rotation, chain.contact_translation);
     c.axes.turning = model.axes == Axes::local;
     c.axes.dim = dim;
-    c.axes.R = c.axes.turning ? frame.R : mat(model.surface_rotation);
+    const Mat world = {{1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    c.axes.R = c.axes.turning ? frame.R : model.axes == Axes::surface ? task : world;
     c.point = frame.p;
     c.jacobian = at_point(kin.S, frame.p);
     c.velocity = at_point(vel.last, frame.p);

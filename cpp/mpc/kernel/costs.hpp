@@ -21,7 +21,8 @@ template <class L> PLIANT_INLINE void clear_cost(NodeValues<L> &n, const Chain &
     }
 }
 
-// Placement and velocity of the tool: residuals r with ∂r/∂q and, for the velocity, ∂r/∂v.
+// Placement and velocity of the tool: residuals r with ∂r/∂q and, for the velocity, ∂r/∂v. Translation and velocity in
+// the axes of the task.
 struct ToolResiduals {
     static constexpr int count = 12; // translation, rotation, linear and angular velocity
     double value[count], weight[count];
@@ -32,20 +33,30 @@ template <int J>
 PLIANT_INLINE ToolResiduals tool_residuals(const Chain &chain, const Kinematics &kin, const Velocities &vel,
                                            const Stage &s) {
     const Frame tool = frame_on_last_link<J>(kin, chain.tool_rotation, chain.tool_translation);
-    const Spatial jacobian = at_point(kin.S, tool.p);
+    Spatial jacobian = at_point(kin.S, tool.p);
     const SpatialVec velocity = at_point(vel.last, tool.p);
     const Spatial carried = at_point(vel.axis_rate, tool.p);
-    const Vecs linear_q = carried.lin + cross(jacobian.ang, velocity.lin);
-    const Vecs angular_q = carried.ang + cross(jacobian.ang, velocity.ang);
+    Vecs linear_q = carried.lin + cross(jacobian.ang, velocity.lin);
+    Vecs angular_q = carried.ang + cross(jacobian.ang, velocity.ang);
     const RotationError error = rotation_error(s.rotation_reference, tool.R);
     const Mat log_rate = error.jacobian * transposed(tool.R); // ė = log_rate ω, ω in world axes
-    const Vec p = tool.p - s.translation_reference;
-    const Vec dv = velocity.lin - s.linear_reference, dw = velocity.ang - s.angular_reference;
+    const Vecs turning = jacobian.ang; // in world axes
+    Vec p = tool.p - s.translation_reference;
+    Vec dv = velocity.lin - s.linear_reference, dw = velocity.ang - s.angular_reference;
+    if (s.turned) {
+        const Mat to_task = transposed(s.task);
+        p = to_task * p;
+        dv = to_task * dv;
+        dw = to_task * dw;
+        jacobian = {to_task * jacobian.lin, to_task * jacobian.ang};
+        linear_q = to_task * linear_q;
+        angular_q = to_task * angular_q;
+    }
     const Vec &wt = s.translation_weight, &wr = s.rotation_weight, &wl = s.linear_weight, &wa = s.angular_weight;
     return {{p.x, p.y, p.z, error.log.x, error.log.y, error.log.z, dv.x, dv.y, dv.z, dw.x, dw.y, dw.z},
             {wt.x, wt.y, wt.z, wr.x, wr.y, wr.z, wl.x, wl.y, wl.z, wa.x, wa.y, wa.z},
-            {jacobian.lin.x, jacobian.lin.y, jacobian.lin.z, dot(jacobian.ang, log_rate.row(0)),
-             dot(jacobian.ang, log_rate.row(1)), dot(jacobian.ang, log_rate.row(2)), linear_q.x, linear_q.y, linear_q.z,
+            {jacobian.lin.x, jacobian.lin.y, jacobian.lin.z, dot(turning, log_rate.row(0)),
+             dot(turning, log_rate.row(1)), dot(turning, log_rate.row(2)), linear_q.x, linear_q.y, linear_q.z,
              angular_q.x, angular_q.y, angular_q.z},
             {jacobian.lin.x, jacobian.lin.y, jacobian.lin.z, jacobian.ang.x, jacobian.ang.y, jacobian.ang.z}};
 }

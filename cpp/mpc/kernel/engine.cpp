@@ -121,9 +121,9 @@ double time_node(Engine *engine, const NodeData &data, bool terminal, bool deriv
     return (now_seconds() - start) / repetitions;
 }
 
-template <class L> void freeze(Engine *engine, const double *q) {
+template <class L> void freeze(Engine *engine, const double *task_rotation, const double *q) {
     Solver<L> &s = solver<L>(engine);
-    s.freeze(load_part(q, s.chain.dof, 1));
+    s.freeze(mat(task_rotation), load_part(q, s.chain.dof, 1));
 }
 
 // Plan -------------------------------------------------------------------------------------------------------------
@@ -164,7 +164,7 @@ template <class L> void quasi_static(Engine *engine, const NodeData *nodes, cons
     const Row<L> x = s.map.pack(x0);
     for (int k = 0; k <= N; ++k) it.x[k] = x;
     Rest<L::J> rest;
-    make_rest<L::J>(s.chain, s.model.data, x.block[0] * s.chain.is_joint, rest);
+    make_rest<L::J>(s.chain, s.model.data, mat(nodes[0].task_rotation), x.block[0] * s.chain.is_joint, rest);
     for (int k = 0; k < N; ++k) {
         it.u[k] = rest.gravity_torque;
         for (int f = 0; f < L::M && nodes[k].contact_active; ++f)
@@ -197,7 +197,7 @@ template <class L> void get_feedback(const Engine *engine, double *gain, double 
 }
 
 template <int J> void make_rest_of(const ChainData &data, const double *q, Rest<J> &rest) {
-    make_rest<J>(make_chain(data, J), ModelData{}, load_part(q, data.dof, 1), rest);
+    make_rest<J>(make_chain(data, J), ModelData{}, Mat{}, load_part(q, data.dof, 1), rest);
 }
 
 template <int J> void mass_matrix_of(const ChainData &data, const double *q, double *M) {

@@ -159,7 +159,7 @@ template <class L>
     const double active = s.active ? 1 : 0;
     const bool exponential = model.disc.exponential;
     Contact c;
-    make_contact<J>(chain, model.data, p.kin, p.vel, p.dyn, M, c);
+    make_contact<J>(chain, model.data, s.task, p.kin, p.vel, p.dyn, M, c);
     double force[M], mean_force[M];
 #pragma GCC unroll 6
     for (int f = 0; f < M; ++f) {

@@ -255,7 +255,7 @@ template <class L>
     torque = torque * chain.is_joint;
     o.dim = s.active ? model.data.contact_dim : 0;
     o.rigid = model.data.kind != Kind::naive_viscoelastic;
-    make_contact<J>(chain, model.data, p.kin, p.vel, p.dyn, o.dim, o.contact);
+    make_contact<J>(chain, model.data, s.task, p.kin, p.vel, p.dyn, o.dim, o.contact);
     deflection<J>(chain, p.kin, o.contact, s, o.dim, o.deflection, o.deflection_q);
     n.acceleration = multiply<J>(p.Minv.row, torque - p.bias); // free motion
     if (o.rigid) rigid_force<J>(model.data, n.acceleration, o);

@@ -13,7 +13,7 @@ template <int J> struct alignas(64) Rest {
 };
 
 template <int J>
-[[gnu::noinline]] void make_rest(const Chain &chain, const ModelData &model, const Lanes &q, Rest<J> &rest) {
+[[gnu::noinline]] void make_rest(const Chain &chain, const ModelData &model, const Mat &task, const Lanes &q, Rest<J> &rest) {
     Pass<J> pass;
     begin_pass<J>(chain, Stage{}, q, zero(), pass);
     finish_dynamics<J>(chain, zero(), pass);
@@ -25,7 +25,7 @@ template <int J>
     rest.gravity_torque = gravity_torque(kin, dyn, SpatialVec{{0, 0, 0}, {0, 0, 0}});
     const int dim = model.contact_dim;
     Contact c;
-    make_contact<J>(chain, model, kin, pass.vel, dyn, dim, c);
+    make_contact<J>(chain, model, task, kin, pass.vel, dyn, dim, c);
     for (int i = 0; i < dim; ++i) {
         rest.contact_row[i] = c.J[i];
         rest.inverse_inertia[i] = sum(multiply<J>(pass.Minv.row, c.J[i]) * c.J[i]);

@@ -26,6 +26,11 @@ struct Mat {
 PLIANT_INLINE Mat mat(const double *p) {
     return {{p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]}};
 }
+PLIANT_INLINE bool is_identity(const Mat &A) {
+    for (int i = 0; i < 9; ++i)
+        if (A.m[i] != (i % 4 == 0)) return false;
+    return true;
+}
 PLIANT_INLINE Vec operator*(const Mat &A, const Vec &v) { return {dot(A.row(0), v), dot(A.row(1), v), dot(A.row(2), v)}; }
 PLIANT_INLINE Mat operator*(const Mat &A, const Mat &B) {
     Mat C;
@@ -60,6 +65,7 @@ PLIANT_INLINE Vecs cross(const Vec &a, const Vecs &b) {
 }
 PLIANT_INLINE Lanes dot(const Vecs &a, const Vecs &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 PLIANT_INLINE Lanes dot(const Vecs &a, const Vec &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+PLIANT_INLINE Vecs operator*(const Mat &A, const Vecs &v) { return {dot(v, A.row(0)), dot(v, A.row(1)), dot(v, A.row(2))}; }
 
 // Running sums of every member of a struct made of Lanes; a loop, so that the code stays small.
 template <class T> PLIANT_INLINE T sum_outward(T a) {

@@ -64,10 +64,10 @@ template <class L> class Solver {
         else output_force_node<L>(chain, model, s, x, u, derivatives, out);
     }
 
-    // Inverse task inertia diag(J M⁻¹ Jᵀ) at q for the exponential step.
-    void freeze(const Lanes &q) {
+    // Inverse task inertia diag(J M⁻¹ Jᵀ) at q, in the axes of a node, for the exponential step.
+    void freeze(const Mat &task, const Lanes &q) {
         Rest<L::J> rest;
-        make_rest<L::J>(chain, model.data, q, rest);
+        make_rest<L::J>(chain, model.data, task, q, rest);
         for (int i = 0; i < model.data.contact_dim; ++i) model.disc.inverse_inertia[i] = rest.inverse_inertia[i];
     }
 
@@ -322,7 +322,7 @@ void Solver<L>::solve(const NodeData *nodes, const double *x0, const Limits &lim
     const Row<L> first = map.pack(x0);
     report.status = Status::nan;
     if (finite(first)) {
-        if (model.disc.exponential) freeze(first.block[0] * chain.is_joint);
+        if (model.disc.exponential) freeze(mat(nodes[0].task_rotation), first.block[0] * chain.is_joint);
         for (int k = 0; k <= options.horizon; ++k) prepare(nodes, k);
         Iterate<L> &it = current();
         it.x[0] = first;

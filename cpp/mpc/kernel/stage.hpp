@@ -8,6 +8,8 @@ namespace pliant::mpc::PLIANT_ISA {
 struct alignas(64) Stage {
     Lanes q_reference, v_reference, q_weight, v_weight;
     Lanes u_reference, u_weight, torque_weight, control_weight; // the last two about gravity under load
+    Mat task; // R_world_task: axes of translation and velocity costs, and of a contact with axes 'surface'
+    bool turned; // task is not the identity
     Vec translation_reference, translation_weight;
     Mat rotation_reference;
     Vec rotation_weight;
@@ -50,6 +52,8 @@ inline void make_stage(const NodeData &data, const ModelData &model, const Discr
     s.u_weight = load_part(data.control_weight, dof, w);
     s.torque_weight = load_part(data.torque_gravity_weight, dof, w);
     s.control_weight = load_part(data.control_gravity_weight, dof, w);
+    s.task = mat(data.task_rotation);
+    s.turned = !is_identity(s.task);
     s.translation_reference = vec(data.translation_reference);
     s.translation_weight = vec(data.translation_weight) * w;
     s.rotation_reference = mat(data.rotation_reference);

@@ -88,13 +88,13 @@ ModelData model(Kind kind, int dim, Axes axes, Integrator integrator) {
     m.integrator = integrator;
     m.torque_bandwidth = 50;
     m.baumgarte_velocity = 10;
-    identity(m.surface_rotation);
     return m;
 }
 
 NodeData parameters(int dof, const double *home, bool bounded) {
     const double inf = std::numeric_limits<double>::infinity();
     NodeData d{};
+    identity(d.task_rotation);
     identity(d.rotation_reference);
     identity(d.anchor_rotation);
     for (int i = 0; i < dof; ++i) {

@@ -10,10 +10,10 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from pliant.estimation.environment_fit import EnvironmentFit, FitConfig, FitState
-from pliant.estimation.momentum_observer import unit_vector
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
+from pliant.surfaces import PlaneSurface, SurfaceGeometry
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,9 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
         robot: kinematics.
         frame: that touches.
         period: s between two measurements.
-        normal: (3,) outward normal of the surface in the world. It must be the surface's: what slides along a surface
-            and is measured along another direction moves without force.
+        normal: (3,) outward normal of the surface in the world, or the believed surface itself where its normal turns.
+            It must be the surface's: what slides along a surface and is measured along another direction moves without
+            force.
         config: how the fit forgets and when it learns.
         sliding: m/s of tangential speed above which nothing is learnt, for a normal that is not known exactly; None:
             learn always.
@@ -53,12 +54,12 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
         frame: str,
         period: float,
         *,
-        normal: npt.ArrayLike = (0.0, 0.0, 1.0),
+        normal: npt.ArrayLike | SurfaceGeometry = (0.0, 0.0, 1.0),
         config: FitConfig | None = None,
         sliding: float | None = None,
     ) -> None:
         self.inner, self.robot, self.frame, self.sliding = inner, robot, frame, sliding
-        self.normal = unit_vector(normal, "normal")
+        self.surface = normal if isinstance(normal, SurfaceGeometry) else PlaneSurface.facing(normal)
         self.fit = EnvironmentFit(config or FitConfig(), period)
         self._frame = robot.frame_id(frame)
         self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
@@ -76,10 +77,11 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
             position = pin.updateFramePlacement(model, data, self._frame).translation
             axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
             velocity = pin.getFrameVelocity(model, data, self._frame, axes).linear
-            depth, rate = -float(self.normal @ position), -float(self.normal @ velocity)
-            sliding = float(np.linalg.norm(velocity + rate * self.normal))
+            distance, normal, _ = self.surface.near(position)
+            rate = -float(normal @ velocity)
+            sliding = float(np.linalg.norm(velocity + rate * normal))
             if self.sliding is None or sliding <= self.sliding:
-                fit = self.fit.step(float(self.normal @ np.asarray(wrench[:3])), depth, rate, fit)
+                fit = self.fit.step(float(normal @ np.asarray(wrench[:3])), -distance, rate, fit)
         if fit.found is not None:
             estimate = replace(estimate, environments={**estimate.environments, self.frame: fit.found})
         return estimate, EnvironmentState(inner, fit)

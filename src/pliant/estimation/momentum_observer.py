@@ -27,7 +27,8 @@ from pliant.estimation.ordering import time_since
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
-from pliant.spatial import Array, as_vector
+from pliant.spatial import Array
+from pliant.surfaces import PlaneSurface, SurfaceGeometry
 
 TorqueSource = Literal["sent", "measured"]
 ContactShare = Literal["all", "normal", "none"]
@@ -70,7 +71,8 @@ class MomentumObserver(Estimator[MomentumState]):
             drives); "measured" trusts the joint torque sensors and leaves what acts behind them.
         contact: how much of the contact wrenches the model explains. "normal": the force along `normal`, so that
             friction at the contact falls into d̂; "all": the whole wrench; "none": contact is a disturbance.
-        normal: (3,) outward normal of the surface in the world, any length above zero.
+        normal: (3,) outward normal of the surface in the world, any length above zero, or the believed surface itself
+            where its normal turns.
         frames: whose contact wrenches count; None: every one that the estimator inside reports.
         compensation: what the robot's own controller adds, invisibly, to the torque.
         late_readings: whole periods by which q and v are older than the torque that arrives with them.
@@ -88,7 +90,7 @@ class MomentumObserver(Estimator[MomentumState]):
         gain: float = 30.0,
         torque: TorqueSource = "sent",
         contact: ContactShare = "normal",
-        normal: npt.ArrayLike = (0.0, 0.0, 1.0),
+        normal: npt.ArrayLike | SurfaceGeometry = (0.0, 0.0, 1.0),
         frames: Sequence[str] | None = None,
         compensation: Compensation = "none",
         late_readings: int = 0,
@@ -103,7 +105,7 @@ class MomentumObserver(Estimator[MomentumState]):
         self.inner, self.robot, self.gain = inner, robot, gain
         self.torque, self.contact, self.compensation = torque, contact, compensation
         self.late_readings = late_readings
-        self.normal = unit_vector(normal, "normal")
+        self.surface = normal if isinstance(normal, SurfaceGeometry) else PlaneSurface.facing(normal)
         self.frames = None if frames is None else frozenset(frames)
         self._ids = {frame: robot.frame_id(frame) for frame in frames or ()}
         self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
@@ -163,17 +165,9 @@ class MomentumObserver(Estimator[MomentumState]):
         axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         J = pin.computeFrameJacobian(self.robot.model, self._data, q, self._ids[frame], axes)
         if self.contact == "normal":
-            return np.asarray(J[:3].T @ (self.normal * float(self.normal @ wrench[:3])), dtype=np.float64)
+            normal = self.surface.normal(self._data.oMf[self._ids[frame]].translation)
+            return np.asarray(J[:3].T @ (normal * float(normal @ wrench[:3])), dtype=np.float64)
         return np.asarray(J.T @ wrench, dtype=np.float64)
-
-
-def unit_vector(direction: npt.ArrayLike, name: str) -> Array:
-    """A direction (3,) of length one. Raises ConfigError if it has no length."""
-    vector = as_vector(direction, 3, name)
-    length = float(np.linalg.norm(vector))
-    if length < 1e-9:
-        raise ConfigError(f"{name} must have a length above zero, got {vector.tolist()}")
-    return vector / length
 
 
 def _check_option(name: str, value: str, valid: Sequence[str]) -> None:

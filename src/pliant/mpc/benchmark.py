@@ -127,7 +127,9 @@ class NoisyLoop:
         self.solver.nodes.anchor_translation[...] = self._home
         extra = self.solver.nx - 2 * case.robot.n
         gravity = pin.computeGeneralizedGravity(case.robot.model, case.robot.model.createData(), case.robot.home)
-        pressing = self.problem.in_contact_axes(np.array([0.0, 0.0, _FORCE, 0.0, 0.0, 0.0]), self._R)
+        pressing = self.problem.in_contact_axes(
+            np.array([0.0, 0.0, _FORCE, 0.0, 0.0, 0.0]), self.problem.contact_axes(self._R, None)
+        )
         start = gravity if case.config.kind == "torque_feedback" else pressing
         self.x = np.concatenate([case.robot.home, np.zeros(case.robot.n), start[:extra]])
         noise = {"force_feedback": 0.01, "torque_feedback": 0.02}.get(case.config.kind, 0.0)  # N, N·m

@@ -57,7 +57,7 @@ class Compensator:
         self.lead = config.computation_delay + self._late * period
         """s from an estimate to the effect of the command that answers to it"""
         self._prediction = DelayPrediction(problem, chain, period)
-        self._frame, self._normal = problem.contact_frame, problem.normal
+        self._problem, self._frame = problem, problem.contact_frame
 
     @property
     def contact(self) -> _mpc.Nodes:
@@ -103,9 +103,10 @@ class Compensator:
         """References whose force is shifted along the normal, at the nodes at which there is to be one."""
         if state.force_shift == 0.0:
             return horizon
-        pressing = horizon.wrench[:, :3] @ self._normal > 0.0
+        normals = np.broadcast_to(self._problem.normals(horizon.task_rotation), (len(horizon.wrench), 3))
+        pressing = np.sum(horizon.wrench[:, :3] * normals, axis=1) > 0.0
         wrench = horizon.wrench.copy()
-        wrench[:, :3] += state.force_shift * np.outer(pressing, self._normal)
+        wrench[:, :3] += state.force_shift * pressing[:, None] * normals
         return replace(horizon, wrench=wrench)
 
     def integrate(
@@ -124,7 +125,8 @@ class Compensator:
             return state
         if not (pressing and estimate.contacts.get(self._frame, False)):
             return replace(state, force_shift=0.0)
-        error = float(self._normal @ (reference.tasks[0].wrench[:3] - measured[:3]))
+        normal = self._problem.normals(reference.tasks[0].task_rotation)
+        error = float(normal @ (reference.tasks[0].wrench[:3] - measured[:3]))
         if not np.isfinite(error):
             return state
         limit = self.config.force_shift_max

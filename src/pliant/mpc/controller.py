@@ -99,7 +99,7 @@ class MpcController(Controller[MpcState]):
         """
         q = np.array(self.robot.vector(estimate.q, "the estimate's q"))
         v = np.array(self.robot.vector(estimate.v, "the estimate's v"))
-        self._measured_state(estimate)
+        self._measured_state(estimate, None)
         solver = kernel_solver(self.problem, self.chain, self.model)
         nodes = solver.nodes
         self.problem.write_constants(nodes)
@@ -116,7 +116,9 @@ class MpcController(Controller[MpcState]):
         )
 
     def step(self, estimate: Estimate, reference: Reference, state: MpcState) -> tuple[Command, MpcState]:
-        x = self._measured_state(estimate)
+        task = next((task for task in reference.tasks if task.frame == self.config.frame), None)
+        R_world_task = None if task is None else task.task_rotation
+        x = self._measured_state(estimate, R_world_task)
         if all_finite(estimate.q, estimate.v):
             state.q, state.v = estimate.q, estimate.v
         if not all_finite(x):
@@ -125,7 +127,7 @@ class MpcController(Controller[MpcState]):
         if all_finite(disturbance):
             state.disturbance = disturbance
         if estimate.time >= state.next_solve - _TICK:
-            self._solve(estimate, reference, x, state)
+            self._solve(estimate, reference, x, R_world_task, state)
             state.next_solve = estimate.time + self.config.period
         wanted, source = self._torque(estimate.time, x, state)
         within = np.clip(wanted, -self._limit, self._limit)
@@ -141,7 +143,9 @@ class MpcController(Controller[MpcState]):
 
     # ------------------------------------------------------------------ inside
 
-    def _solve(self, estimate: Estimate, reference: Reference, x: Array | None, state: MpcState) -> None:
+    def _solve(
+        self, estimate: Estimate, reference: Reference, x: Array | None, R_world_task: Array | None, state: MpcState
+    ) -> None:
         """Replaces the plan if there is a usable solution."""
         config = self.config
         if x is None:
@@ -152,6 +156,7 @@ class MpcController(Controller[MpcState]):
         state.compensation = self.compensator.integrate(estimate, reference, state.touching, state.compensation)
         horizon = self.compensator.shifted(horizon, state.compensation)
         self._write_environment(estimate, state)
+        self.problem.write_axes(self.compensator.contact, R_world_task)
         x = self.compensator.ahead(x, state.disturbance, self._touches(estimate, state), state.compensation)
         self._write_horizon(horizon, estimate, x, state)
         if state.plan is None or state.failures:
@@ -217,8 +222,8 @@ class MpcController(Controller[MpcState]):
         known = options(self.config.phases)
         raise ConfigError(f"a reference without phases needs a phase with contact = {touches}; {known}")
 
-    def _measured_state(self, estimate: Estimate) -> Array:
-        """(nx,) x of now: q, v and, by kind, contact force or joint torque."""
+    def _measured_state(self, estimate: Estimate, R_world_task: Array | None) -> Array:
+        """(nx,) x of now: q, v and, by kind, contact force (in axes of the task, where it has some) or joint torque."""
         if self.config.kind == "torque_feedback":
             return np.concatenate([estimate.q, estimate.v, estimate.torque])
         if self.config.kind != "force_feedback":
@@ -229,8 +234,9 @@ class MpcController(Controller[MpcState]):
             known = options(estimate.wrenches)
             raise SignalError(f"force feedback needs the estimated contact wrench of frame {frame!r}; {known}")
         local = self.config.contact.axes == "local"
-        R = self.chain.contact_placement(np.nan_to_num(estimate.q))[0] if local else np.eye(3)
-        return np.concatenate([estimate.q, estimate.v, self.problem.in_contact_axes(wrench, R)])
+        R = self.chain.contact_placement(np.nan_to_num(estimate.q))[0] if local else None
+        force = self.problem.in_contact_axes(wrench, self.problem.contact_axes(R, R_world_task))
+        return np.concatenate([estimate.q, estimate.v, force])
 
     def _torque(self, time: float, x: Array | None, state: MpcState) -> tuple[Array, str]:
         if state.plan is not None:

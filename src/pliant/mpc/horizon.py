@@ -27,6 +27,8 @@ class HorizonReference:
     """(N+1, n) rad"""
     phase: tuple[str, ...]
     """(N+1,) name of the phase of each node's own time"""
+    task_rotation: Array | None = None
+    """(N+1, 3, 3) R_world_task; None: the world's axes"""
 
 
 def along_horizon(reference: Reference, frame: str, horizon: int, dt: float, lead: float = 0.0) -> HorizonReference:
@@ -61,7 +63,13 @@ def _sampled(preview: Preview, times: Array) -> HorizonReference:
     phase = preview.phase or ("",) * len(preview.time)
     if len(preview.time) == len(times) and np.abs(preview.time - times).max() < 1e-9:
         return HorizonReference(
-            preview.position, preview.rotation, preview.velocity, preview.wrench, preview.posture, phase
+            preview.position,
+            preview.rotation,
+            preview.velocity,
+            preview.wrench,
+            preview.posture,
+            phase,
+            preview.task_rotation,
         )
     at = np.clip(np.searchsorted(preview.time, times + 1e-9, side="right") - 1, 0, len(preview.time) - 1)
     after = np.minimum(at + 1, len(preview.time) - 1)
@@ -78,6 +86,7 @@ def _sampled(preview: Preview, times: Array) -> HorizonReference:
         wrench=between(preview.wrench),
         posture=None if preview.posture is None else between(preview.posture),
         phase=tuple(phase[index] for index in at),
+        task_rotation=None if preview.task_rotation is None else preview.task_rotation[at],
     )
 
 
@@ -95,4 +104,5 @@ def _extrapolated(reference: Reference, frame: str, elapsed: Array) -> HorizonRe
         wrench=np.tile(task.wrench, (count, 1)),
         posture=None if reference.posture is None else np.tile(reference.posture, (count, 1)),
         phase=(reference.phase,) * count,
+        task_rotation=None if task.task_rotation is None else np.tile(task.task_rotation, (count, 1, 1)),
     )

@@ -10,12 +10,10 @@ from pliant.mpc.problem import MpcProblem
 def kernel_model(problem: MpcProblem, kind: Kind | None = None) -> _mpc.Model:
     """The compiled model of a problem, or one of another kind with the same contact."""
     contact = problem.config.contact
-    surface = problem.R_world_surface if contact.axes == "surface" else None
     return _mpc.Model(
         kind or problem.config.kind,
         problem.m,
         contact.axes,
-        surface_rotation=surface,
         torque_bandwidth=problem.config.torque_bandwidth,
         baumgarte=contact.baumgarte,
         integrator=contact.integrator,

@@ -20,6 +20,7 @@ class NodeParameters(Protocol):
     control_weight: Array
     torque_gravity_weight: Array
     control_gravity_weight: Array
+    task_rotation: Array
     translation_reference: Array
     translation_weight: Array
     rotation_reference: Array
@@ -55,6 +56,7 @@ class PlainNodes:
     control_weight: Array
     torque_gravity_weight: Array
     control_gravity_weight: Array
+    task_rotation: Array
     translation_reference: Array
     translation_weight: Array
     rotation_reference: Array
@@ -90,6 +92,7 @@ class PlainNodes:
             control_weight=zero(nu),
             torque_gravity_weight=zero(nu),
             control_gravity_weight=zero(nu),
+            task_rotation=np.tile(np.eye(3), (count, 1, 1)),
             translation_reference=zero(3),
             translation_weight=zero(3),
             rotation_reference=np.tile(np.eye(3), (count, 1, 1)),

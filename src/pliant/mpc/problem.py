@@ -53,11 +53,10 @@ class MpcProblem:
     def contact_frame(self) -> str:
         return self.config.contact.frame or self.config.frame
 
-    @property
-    def normal(self) -> Array:
-        """(3,) outward normal of the surface in the world, as far as the problem knows one."""
+    def normals(self, R_world_task: Array | None) -> Array:
+        """(..., 3) outward normals in the world along which the force is regulated, for axes (..., 3, 3) of the task."""
         surface = self.config.contact.axes == "surface"
-        return self.R_world_surface[:, 2] if surface else np.array([0.0, 0.0, 1.0])
+        return self.contact_axes(None, R_world_task)[..., 2] if surface else np.array([0.0, 0.0, 1.0])
 
     def nodes(self) -> PlainNodes:
         """Parameters of the horizon as plain arrays, constants filled in."""
@@ -124,27 +123,43 @@ class MpcProblem:
         nodes.translation_reference[...] = reference.position
         if reference.rotation is not None:
             nodes.rotation_reference[...] = reference.rotation
+        self.write_axes(nodes, reference.task_rotation)
         if self.config.task_velocity:
             nodes.velocity_reference[...] = reference.velocity
         if self.m:
-            R = np.eye(3) if reference.rotation is None else reference.rotation
-            nodes.force_reference[...] = self.in_contact_axes(reference.wrench, R)
+            axes = self.contact_axes(reference.rotation, reference.task_rotation)
+            nodes.force_reference[...] = self.in_contact_axes(reference.wrench, axes)
 
-    def in_contact_axes(self, wrench: Array, R_world_contact: Array) -> Array:
+    def write_axes(self, nodes: NodeParameters, R_world_task: Array | None) -> None:
+        """Gives each node the axes of its task, (..., 3, 3), where the contact's are those of the surface."""
+        if self.config.contact.axes == "surface":
+            nodes.task_rotation[...] = self.contact_axes(None, R_world_task)
+
+    def contact_axes(self, R_world_contact: Array | None, R_world_task: Array | None) -> Array:
+        """(..., 3, 3) axes of the contact force in the world.
+
+        Args:
+            R_world_contact: (..., 3, 3) orientation of the contact frame, for axes 'local'; None: the world's.
+            R_world_task: (..., 3, 3) axes of the task, for axes 'surface'; None: those of the configured normal.
+        """
+        axes = self.config.contact.axes
+        if axes == "surface":
+            return self.R_world_surface if R_world_task is None else R_world_task
+        return np.eye(3) if axes == "world" or R_world_contact is None else R_world_contact
+
+    def in_contact_axes(self, wrench: Array, R_world_axes: Array) -> Array:
         """Components of wrenches that the model knows.
 
         Args:
             wrench: (..., 6) world axes, N and N·m.
-            R_world_contact: (..., 3, 3) orientation of the contact frame, for axes 'local'.
+            R_world_axes: (..., 3, 3) see `contact_axes`.
 
         Returns:
             (..., m) contact axes.
         """
-        axes = self.config.contact.axes
-        if axes != "world":
-            R = R_world_contact if axes == "local" else self.R_world_surface
+        if self.config.contact.axes != "world":
             parts = wrench.reshape(*wrench.shape[:-1], 2, 3)
-            wrench = np.einsum("...ij,...ki->...kj", R, parts).reshape(wrench.shape)
+            wrench = np.einsum("...ij,...ki->...kj", R_world_axes, parts).reshape(wrench.shape)
         return wrench[..., list(AXES_OF_DIMENSION[self.m])] if self.m else wrench[..., :0]
 
 

@@ -37,7 +37,8 @@ class ContactGeometry:
     axes: Axes
     rows: tuple[int, ...]
     """components of the (6,) contact force that the model knows"""
-    R_world_surface: Array
+    R_world_axes: Array
+    """(3, 3) axes of the contact that do not turn with the frame"""
 
     def motion(self, model: pin.Model, data: pin.Data) -> ContactMotion:
         """Needs `pin.computeForwardKinematicsDerivatives` at (q, v, v̇) and updated frames in `data`."""
@@ -65,7 +66,7 @@ class ContactGeometry:
         if self.axes == "local":
             return np.eye(3)
         R_world_frame = np.array(data.oMf[self.frame].rotation)
-        return R_world_frame if self.axes == "world" else self.R_world_surface.T @ R_world_frame
+        return self.R_world_axes.T @ R_world_frame
 
     def local_wrench(self, data: pin.Data, force: Array) -> Array:
         """(6,) wrench in the frame's own axes of a contact force (m,) in contact axes."""

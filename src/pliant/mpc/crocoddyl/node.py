@@ -81,12 +81,18 @@ class PinocchioNode:
         self.parameters = PlainNodes.zeros(1, self.model.nq, self.model.nv, problem.nu, problem.m)
         rows = AXES_OF_DIMENSION[problem.m] if problem.m else ()
         frame = self.model.getFrameId(problem.contact_frame)
-        self._contact = ContactGeometry(frame, contact.axes, rows, problem.R_world_surface)
+        self._frame, self._rows = frame, rows
         self._tool = self.model.getFrameId(problem.config.frame)
         extra = {"force_feedback": problem.m, "torque_feedback": problem.nu}.get(problem.config.kind, 0)
         self.nx, self.ndx, self.nu = self.model.nq + self.model.nv + extra, 2 * self.model.nv + extra, problem.nu
         self._select = np.zeros((self.model.nv, self.nu))
         self._select[list(problem.driven), np.arange(self.nu)] = 1.0
+
+    @property
+    def _contact(self) -> ContactGeometry:
+        axes = self.problem.config.contact.axes
+        R = self.parameters.task_rotation[0] if axes == "surface" else np.eye(3)
+        return ContactGeometry(self._frame, axes, self._rows, R)
 
     # ------------------------------------------------------------------ evaluation
 
@@ -259,14 +265,17 @@ class PinocchioNode:
         return value, self.parameters.state_weight[0], by_x, np.zeros((2 * nv, self.nu))
 
     def _placement_residuals(self, q: Array, v: Array) -> list[Residual]:
-        """Tool position, orientation and twist, world axes."""
+        """Tool position and twist in task axes, orientation."""
         nv, p = self.model.nv, self.parameters
         self._kinematics(q, v, np.zeros(nv))
         placement = self.data.oMf[self._tool]
         R, J = np.array(placement.rotation), pin.getFrameJacobian(self.model, self.data, self._tool, pin.LOCAL)
         error = pin.log3(p.rotation_reference[0].T @ R)
         log_slope = pin.Jlog3(p.rotation_reference[0].T @ R)
-        whole = ContactGeometry(self._tool, "world", (0, 1, 2, 3, 4, 5), np.eye(3)).motion(self.model, self.data)
+        to_task = p.task_rotation[0].T
+        whole = ContactGeometry(self._tool, "surface", (0, 1, 2, 3, 4, 5), to_task.T).motion(self.model, self.data)
+        twist = np.concatenate([to_task @ p.velocity_reference[0, :3], to_task @ p.velocity_reference[0, 3:]])
+        offset = to_task @ (placement.translation - p.translation_reference[0])
 
         def over_q(by_q: Array) -> Array:
             return np.hstack([by_q, np.zeros((len(by_q), self.ndx - nv))])
@@ -275,9 +284,9 @@ class PinocchioNode:
         twist_x[:, nv : 2 * nv] = whole.J
         none = np.zeros((6, self.nu))
         return [
-            (placement.translation - p.translation_reference[0], p.translation_weight[0], over_q(R @ J[:3]), none[:3]),
+            (offset, p.translation_weight[0], over_q(to_task @ R @ J[:3]), none[:3]),
             (np.array(error), p.rotation_weight[0], over_q(log_slope @ J[3:]), none[:3]),
-            (whole.velocity - p.velocity_reference[0], p.velocity_weight[0], twist_x, none),
+            (whole.velocity - twist, p.velocity_weight[0], twist_x, none),
         ]
 
     def _torque_residuals(self, q: Array, e: Array, u: Array, d: _Dynamics) -> list[Residual]:
