@@ -37,7 +37,7 @@ def test_the_normal_is_the_gradient_of_the_distance(surface: SurfaceGeometry) ->
 
 @EACH
 def test_the_chart_lies_on_the_surface_and_measures_lengths_from_its_origin(surface: SurfaceGeometry) -> None:
-    start = surface.near(surface.top() + [0.02, 0.01, 0.0]).point
+    start = surface.near(surface.top() + np.array([0.02, 0.01, 0.0])).point
     along = surface.tangent(start, [0.3, 1.0, 0.1])
     rng = np.random.default_rng(1)
     uv = rng.uniform(-0.05, 0.05, (20, 2))

@@ -54,7 +54,7 @@ class MpcProblem:
         return self.config.contact.frame or self.config.frame
 
     def normals(self, R_world_task: Array | None) -> Array:
-        """(..., 3) outward normals in the world along which the force is regulated, for axes (..., 3, 3) of the task."""
+        """(..., 3) outward normals in the world along which a force is regulated, for task axes (..., 3, 3)."""
         surface = self.config.contact.axes == "surface"
         return self.contact_axes(None, R_world_task)[..., 2] if surface else np.array([0.0, 0.0, 1.0])
 

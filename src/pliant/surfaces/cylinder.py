@@ -49,7 +49,7 @@ class CylinderSurface(SurfaceGeometry):
         return self._side / self.radius, 0.0
 
     def top(self) -> Array:
-        """Over (under, in a pipe) the origin, as high as the surface is there; of an upright cylinder its own +x side."""
+        """Over the origin (under it, in a pipe), as high as the surface is there; +x of an upright cylinder."""
         axis = self.rotation[:, 2]
         up = np.array([0.0, 0.0, 1.0]) - axis * axis[2]
         length = float(np.linalg.norm(up))
