@@ -161,11 +161,11 @@ class TaskReference:
     """(6,) m/s² and rad/s²"""
     wrench: Array = field(default_factory=lambda: np.zeros(6))
     """(6,) desired reaction of the environment, N and N·m (a tool pressing 40 N on a floor: +40 along z)"""
+    tuning: ImpedanceTuning | None = None
+    """None: the controller's own"""
     task_rotation: Array | None = None
     """R_world_task (3, 3): the axes in which motion and force are separate; its third column is the believed outward
     normal of the surface. None: the world's"""
-    tuning: ImpedanceTuning | None = None
-    """None: the controller's own"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,12 +183,12 @@ class Preview:
     """(N+1, 6) twist, m/s and rad/s"""
     wrench: Array
     """(N+1, 6) desired reaction, N and N·m"""
-    task_rotation: Array | None = None
-    """(N+1, 3, 3) R_world_task at each node; None: the world's axes"""
     phase: tuple[str, ...] = ()
     """(N+1,) name of the phase at each node"""
     posture: Array | None = None
     """(N+1, n) joint configuration that goes with the task, rad"""
+    task_rotation: Array | None = None
+    """(N+1, 3, 3) R_world_task at each node; None: the world's axes"""
 
 
 @dataclass(frozen=True, slots=True)
