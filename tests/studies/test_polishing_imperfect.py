@@ -148,6 +148,7 @@ def test_the_report_shows_ours_beside_the_papers_and_counts_failures() -> None:
     runs = [fake("force-feedback-mpc", "PID", seed, force) for seed, force in enumerate((2.0, 4.0, None))]
     runs += [fake("force-feedback-mpc", "no PID", seed, force) for seed, force in enumerate((7.0, 6.0, 5.0))]
     text = report(runs)
-    assert "3.00 ± 1.0 (2.04)" in text
-    assert "1 of 3" in text
-    assert "3.50 ± 1.5 (8.51)" in text  # Table IV: pairs of which both ended: 7 − 2 and 6 − 4
+    assert "| E_λ, N, mean | 3.00 ± 1.4 (2.04) |" in text  # of the two that ended, n − 1
+    assert "| runs that means and worst are of | 2 |" in text
+    assert "| failed, one-sided 95 % bound | 1 of 3: ≤ 86 % |" in text
+    assert "| 3.50 ± 2.1, n = 2 (8.51) |" in text  # Table IV: pairs of which both ended: 7 − 2 and 6 − 4

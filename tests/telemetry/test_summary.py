@@ -68,7 +68,10 @@ def test_mean_over_runs_hides_no_failure() -> None:
     runs = [(Metric("a", value, "N", 2.0, 3.0),) for value in (1.0, 2.0, 6.0)]
     (mean,) = over_runs(runs)
     assert mean.value == pytest.approx(3.0)
-    assert mean.std == pytest.approx(math.sqrt(14.0 / 3.0))
+    assert mean.std == pytest.approx(math.sqrt(14.0 / 2.0))  # of n − 1
+    assert (mean.runs, mean.worst) == (3, False)
+    assert over_runs(runs[:1])[0].runs == 1
+    assert over_runs(runs[:1])[0].std is None
     assert (mean.unit, mean.paper, mean.target) == ("N", 2.0, 3.0)
     (spoiled,) = over_runs([*runs, (Metric("a", math.nan, "N", 2.0, 3.0),)])
     assert math.isnan(spoiled.value)
@@ -84,6 +87,7 @@ def test_the_worst_run_decides_where_it_should() -> None:
     ]
     largest, least = over_runs(runs, worst=("peak", "reach"))
     assert (largest.value, largest.met, largest.std) == (9.0, False, None)
+    assert (largest.runs, largest.worst) == (2, True)
     assert (least.value, least.met) == (1.0, False)
     spoiled, _ = over_runs([*runs, (Metric("peak", math.nan, "N", target=5.0),)], worst=("peak",))
     assert math.isnan(spoiled.value)
@@ -101,7 +105,7 @@ def test_table_and_markdown_show_targets_and_failures() -> None:
             "≤ 1.00",
             "≥ 30.0",
             "never",
-            "1 of 10 runs failed: diverged",
+            "1 of 10 runs failed (≤ 39 %): diverged",
             "control arm",
         ):
             assert expected in text
@@ -145,3 +149,24 @@ def test_a_file_that_is_no_summary(tmp_path: Path, content: str) -> None:
     (tmp_path / "summary.json").write_text(content)
     with pytest.raises(OutputError, match="not a summary"):
         Summary.read(tmp_path)
+
+
+def test_every_row_says_of_how_many_runs_it_is() -> None:
+    runs = [(Metric("a", value, "N"), Metric("peak", value, "N")) for value in (1.0, 2.0, 6.0)]
+    metrics = over_runs(runs, worst=("peak",))
+    summary = Summary("toy", 0, (Case("c", "x", metrics, runs=5, failures=("fell", "fell")), Case("d", "x", runs=140)))
+    text = summary_markdown(summary)
+    assert "| c | x | a | 3.00 ± 2.6 | – | – | N | mean of 3 |  |" in text
+    assert "| c | x | peak | 6.00 | – | – | N | worst of 3 |  |" in text
+    assert "- c, x: 2 of 5 runs failed (≤ 81 %): fell (and 1 more)" in text
+    assert "- d, x: no run failed, 0 of 140: ≤ 2.1 %" in text
+    assert "one-sided 95 % Clopper–Pearson bound" in text
+
+
+def test_the_statistics_survive_the_file(tmp_path: Path) -> None:
+    metrics = over_runs([(Metric("a", v, "N"), Metric("peak", v, "N")) for v in (1.0, 3.0)], worst=("peak",))
+    path = Summary("toy", 0, (Case("c", "x", metrics, runs=2),)).write(tmp_path)
+    stored = json.loads(path.read_text(encoding="utf-8"))["cases"][0]["metrics"]
+    assert (stored["a"]["runs"], stored["a"]["statistic"]) == (2, "mean")
+    assert (stored["peak"]["runs"], stored["peak"]["statistic"]) == (2, "worst")
+    assert Summary.read(path).cases[0].metrics == metrics

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pliant.telemetry.summary import Case, Summary
-from pliant.telemetry.table import MET, MISSED, failed_text, number, target_text, value_text
+from pliant.telemetry.table import COUNTING, MET, MISSED, failed_text, number, runs_text, target_text, value_text
 
 
 def summary_markdown(summary: Summary) -> str:
     """One table per summary: a row per metric, failed runs and notes below it."""
     lines = [
-        "| case | controller | metric | value | paper | target | unit | |",
-        "|---|---|---|---:|---:|---:|---|---|",
+        "| case | controller | metric | value | paper | target | unit | runs | |",
+        "|---|---|---|---:|---:|---:|---|---|---|",
     ]
     for case in summary.cases:
         lines += _rows(case)
@@ -20,6 +20,8 @@ def summary_markdown(summary: Summary) -> str:
         for text in (failed_text(case), case.note)
         if text
     ]
+    if any(case.runs > 1 for case in summary.cases):
+        remarks += ["", COUNTING]
     return "\n".join([*lines, *(["", *remarks] if remarks else [])]) + "\n"
 
 
@@ -36,6 +38,7 @@ def _rows(case: Case) -> list[str]:
             number(metric.paper),
             target_text(metric),
             metric.unit,
+            runs_text(metric),
             mark,
         )
         rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")

@@ -33,7 +33,11 @@ class Metric:
     at_least: bool = False
     """whether the target is a lower bound; else an upper one"""
     std: float | None = None
-    """standard deviation over runs"""
+    """sample standard deviation over runs, of n − 1"""
+    runs: int | None = None
+    """how many runs the value is of, all of which reached their end; None: it is not of several runs"""
+    worst: bool = False
+    """whether it is the worst of those runs, else their mean"""
 
     @property
     def met(self) -> bool | None:
@@ -113,15 +117,16 @@ class Summary:
 
 
 def over_runs(runs: Sequence[Sequence[Metric]], worst: Collection[str] = ()) -> tuple[Metric, ...]:
-    """Mean and standard deviation of each metric over runs, or the worst run's value.
+    """Mean and sample standard deviation (n − 1) of each metric over runs, or the worst run's value.
 
     Args:
-        runs: the metrics of each run that reached its end. A metric that some runs lack is averaged over the others;
-            one that is not finite makes the mean so, so that no failure hides.
+        runs: the metrics of each run that reached its end; a run that failed has no place here, neither in a mean nor
+            as the worst, and is counted beside. A metric that some runs lack is averaged over the others; one that is
+            not finite makes the mean so, so that no failure hides.
         worst: names of metrics that the worst run decides, as λ_max and t_break do in [FFMPC]; those have no deviation.
 
     Returns:
-        One metric per name, in the order of first appearance.
+        One metric per name, in the order of first appearance, with the number of runs that it is of.
     """
     values: dict[str, list[Metric]] = {}
     for run in runs:
@@ -133,13 +138,16 @@ def over_runs(runs: Sequence[Sequence[Metric]], worst: Collection[str] = ()) -> 
 def _averaged(found: Sequence[Metric]) -> Metric:
     numbers = [metric.value for metric in found]
     mean = float(np.mean(numbers))  # NaN and infinity pass through
-    deviation = float(np.std(numbers)) if math.isfinite(mean) else math.nan
-    return replace(found[0], value=mean, std=deviation if len(found) > 1 else None)
+    if len(found) == 1:
+        return replace(found[0], runs=1)
+    deviation = float(np.std(numbers, ddof=1)) if math.isfinite(mean) else math.nan
+    return replace(found[0], value=mean, std=deviation, runs=len(found))
 
 
 def _worst(found: Sequence[Metric]) -> Metric:
     numbers = [metric.value for metric in found]
-    return replace(found[0], value=float(np.min(numbers) if found[0].at_least else np.max(numbers)))
+    worst = float(np.min(numbers) if found[0].at_least else np.max(numbers))
+    return replace(found[0], value=worst, runs=len(found), worst=True)
 
 
 def _case_to_json(case: Case) -> dict[str, Any]:
@@ -165,6 +173,8 @@ def _metric_to_json(metric: Metric) -> dict[str, Any]:
         content["at_least"] = True
     if metric.std is not None:
         content["std"] = _number(metric.std)
+    if metric.runs is not None:
+        content |= {"runs": metric.runs, "statistic": "worst" if metric.worst else "mean"}
     return content
 
 
@@ -183,6 +193,8 @@ def _case_from_json(content: dict[str, Any]) -> Case:
             target=about.get("target"),
             at_least=about.get("at_least", False),
             std=about.get("std"),
+            runs=about.get("runs"),
+            worst=about.get("statistic") == "worst",
         )
         for name, about in content["metrics"].items()
     )

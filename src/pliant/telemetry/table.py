@@ -7,9 +7,15 @@ import math
 from rich.table import Table
 from rich.text import Text
 
+from pliant.telemetry.proportion import share_bound, share_text
 from pliant.telemetry.summary import Case, Metric, Summary
 
 MET, MISSED = "✓", "✗"
+COUNTING = (
+    "Means, deviations (n − 1) and worst runs are of the runs that reached their end; in brackets or after ≤ the"
+    " one-sided 95 % Clopper–Pearson bound on the share of runs that fail."
+)
+"""how tables of several runs count"""
 
 
 def summary_table(summary: Summary) -> Table:
@@ -24,9 +30,12 @@ def summary_table(summary: Summary) -> Table:
     for heading in ("value", "paper", "target"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("unit")
+    table.add_column("runs", justify="right", no_wrap=True)
     table.add_column("", width=1)
     for case in summary.cases:
         _add_case(table, case, single)
+    if any(case.runs > 1 for case in summary.cases):
+        table.caption, table.caption_justify = COUNTING, "left"
     return table
 
 
@@ -51,6 +60,13 @@ def value_text(metric: Metric) -> str:
     return number(metric.value) if metric.std is None else f"{number(metric.value)} ± {number(metric.std, 2)}"
 
 
+def runs_text(metric: Metric) -> str:
+    """Of how many runs the value is the mean or the worst; empty if it is not of several."""
+    if metric.runs is None or metric.runs == 1:
+        return "" if metric.runs is None else "1"
+    return f"worst of {metric.runs}" if metric.worst else f"mean of {metric.runs}"
+
+
 def target_text(metric: Metric) -> str:
     """The bound with its direction; a dash without one."""
     if metric.target is None:
@@ -59,12 +75,14 @@ def target_text(metric: Metric) -> str:
 
 
 def failed_text(case: Case) -> str:
-    """How many runs of a case did not reach their end; empty if all did."""
-    if not case.failures:
-        return ""
-    first = case.failures[0]
-    more = f" (and {len(case.failures) - 1} more)" if len(case.failures) > 1 else ""
-    return f"{len(case.failures)} of {case.runs} runs failed: {first}{more}"
+    """How many runs of a case did not reach their end, with the bound of `share_bound` on the share; empty for a single
+    run that did."""
+    count = len(case.failures)
+    if not count:
+        return f"no run failed, {share_text(0, case.runs)}" if case.runs > 1 else ""
+    more = f" (and {count - 1} more)" if count > 1 else ""
+    bound = f" (≤ {100.0 * share_bound(count, case.runs):.2g} %)" if case.runs > 1 else ""
+    return f"{count} of {case.runs} runs failed{bound}: {case.failures[0]}{more}"
 
 
 def _add_case(table: Table, case: Case, single: bool) -> None:
@@ -79,11 +97,13 @@ def _add_case(table: Table, case: Case, single: bool) -> None:
             number(metric.paper),
             target_text(metric),
             metric.unit,
+            runs_text(metric),
             Text(mark, style="bold red" if missed else "green"),
         )
         names = () if single else ("", "")
-    if case.failures:
-        table.add_row(*names, Text(failed_text(case), style="bold red"), "", "", "", "", Text(MISSED, style="bold red"))
+    if failed := failed_text(case):
+        style, mark = ("bold red", MISSED) if case.failures else ("dim", "")
+        table.add_row(*names, Text(failed, style=style), *[""] * 5, Text(mark, style=style))
         names = () if single else ("", "")
     if case.note:
         table.add_row(*names, Text(case.note, style="dim"))

@@ -9,6 +9,7 @@ import numpy as np
 from pliant.experiments.base import Result
 from pliant.studies.polishing.measure import WORST
 from pliant.studies.polishing.paper import DIFFERENCE, STOCK
+from pliant.telemetry.proportion import share_text
 from pliant.telemetry.summary import Metric, over_runs
 from pliant.telemetry.table import number, value_text
 
@@ -52,13 +53,19 @@ def report(results: Sequence[Result]) -> str:
 
 
 def _table(found: Mapping[str, Sequence[Result]]) -> str:
-    """A row per metric, a column per controller; the paper's number in brackets."""
+    """A row per metric, a column per controller; the paper's number in brackets. Runs that failed enter no row but
+    the last one."""
     columns = {name: {m.name: m for m in _averaged(runs)} for name, runs in found.items()}
     lines = ["| | " + " | ".join(columns) + " |", "|---|" + "---:|" * len(columns)]
     for name, title in _SHORT.items():
-        lines.append(f"| {title} | " + " | ".join(_cell(metrics.get(name)) for metrics in columns.values()) + " |")
-    counts = [f"{sum(r.failure is not None for r in runs)} of {len(runs)}" for runs in found.values()]
-    lines.append("| failed runs | " + " | ".join(counts) + " |")
+        statistic = "worst" if name in WORST else "mean"
+        lines.append(
+            f"| {title}, {statistic} | " + " | ".join(_cell(metrics.get(name)) for metrics in columns.values()) + " |"
+        )
+    failed = [sum(r.failure is not None for r in runs) for runs in found.values()]
+    counts = [(count, len(runs)) for count, runs in zip(failed, found.values(), strict=True)]
+    lines.append("| runs that means and worst are of | " + " | ".join(f"{n - count}" for count, n in counts) + " |")
+    lines.append("| failed, one-sided 95 % bound | " + " | ".join(share_text(*pair) for pair in counts) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -73,7 +80,8 @@ def _cell(metric: Metric | None) -> str:
 
 
 def _difference(without: Mapping[str, Sequence[Result]], within: Mapping[str, Sequence[Result]]) -> str:
-    """Mean ± deviation over pairs of runs with the same draws; pairs of which one failed are left out."""
+    """Mean ± sample deviation (n − 1) over pairs of runs with the same draws, and how many; pairs of which one failed
+    are left out."""
     names = [name for name in without if name in within]
     lines = ["| | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names)]
     for metric, unit in (("E_λ", "N"), ("E_τ", "N·m")):
@@ -81,10 +89,17 @@ def _difference(without: Mapping[str, Sequence[Result]], within: Mapping[str, Se
         for name in names:
             pairs = _pairs(without[name], within[name], metric)
             paper = f" ({DIFFERENCE[metric][STOCK.index(name)]:g})" if name in STOCK else ""
-            text = f"{number(float(np.mean(pairs)))} ± {number(float(np.std(pairs)), 2)}" if pairs else "–"
+            text = _mean_text(pairs)
             cells.append(text + paper)
         lines.append(f"| Δ{metric}, {unit} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
+
+
+def _mean_text(values: Sequence[float]) -> str:
+    if not values:
+        return "–"
+    deviation = f" ± {number(float(np.std(values, ddof=1)), 2)}" if len(values) > 1 else ""
+    return f"{number(float(np.mean(values)))}{deviation}, n = {len(values)}"
 
 
 def _pairs(without: Sequence[Result], within: Sequence[Result], metric: str) -> list[float]:
