@@ -1,0 +1,57 @@
+"""How fast a path is run: at its speed where bends allow it, from rest to rest, within a limit of acceleration."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pliant.spatial import Array
+
+_SHARP = 0.3  # rad between two steps: the way turns back or has a corner, where only standing still is slow enough
+
+
+def pace(points: Array, speed: Array | float, acceleration: float) -> Array:
+    """Times at which the points of a path are passed.
+
+    Along the path the speed changes by at most `acceleration`, and in bends v² κ stays below it, so the whole
+    acceleration stays below √2 times the limit.
+
+    Args:
+        points: (k, 3) m, in small steps, none twice.
+        speed: m/s, one or one per point.
+        acceleration: m/s².
+
+    Returns:
+        (k,) s, from zero.
+    """
+    steps = np.diff(points, axis=0)
+    ds = np.linalg.norm(steps, axis=1)
+    limit = np.minimum(
+        np.broadcast_to(np.asarray(speed, dtype=np.float64), (len(points),)), _in_bends(steps, ds, acceleration)
+    )
+    square = (limit * limit).tolist()
+    square[0] = square[-1] = 0.0
+    gain = (2.0 * acceleration * ds).tolist()
+    for i in range(1, len(square)):
+        square[i] = min(square[i], square[i - 1] + gain[i - 1])
+    for i in range(len(square) - 2, -1, -1):
+        square[i] = min(square[i], square[i + 1] + gain[i])
+    v = np.sqrt(square)
+    # constant acceleration over each step; between two standstills up to the middle and down again
+    mean = 0.5 * (v[1:] + v[:-1])
+    still = mean < 1e-12
+    dt = np.where(still, 2.0 * np.sqrt(ds / acceleration), ds / np.where(still, 1.0, mean))
+    return np.concatenate([[0.0], np.cumsum(dt)])
+
+
+def _in_bends(steps: Array, ds: Array, acceleration: float) -> Array:
+    """(k,) m/s: the speed whose centripetal acceleration is the limit."""
+    ways = steps / ds[:, None]
+    turn = np.linalg.norm(np.diff(ways, axis=0), axis=1)
+    curvature = turn / (0.5 * (ds[1:] + ds[:-1]))
+    allowed = np.sqrt(acceleration / np.maximum(curvature, 1e-9))
+    allowed[turn > _SHARP] = 0.0
+    allowed = np.concatenate([[math.inf], allowed, [math.inf]])
+    # a bend rules the points beside it, too
+    return np.minimum(allowed, np.minimum(np.append(allowed[1:], math.inf), np.insert(allowed[:-1], 0, math.inf)))
