@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from pliant.errors import ConfigError, OutputError
+from pliant.errors import ConfigError, OutputError, options
 from pliant.spatial import Array
 
 _COLUMNS = ("time", "x", "y", "z", "force", "speed")
-_UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "s": 1.0, "ms": 1e-3, "n": 1.0, "m/s": 1.0, "mm/s": 1e-3}
-_UNITS |= {"mm/min": 1e-3 / 60.0}
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254}
+_UNITS = {**_LENGTHS, "s": 1.0, "ms": 1e-3, "n": 1.0, "m/s": 1.0, "mm/s": 1e-3, "mm/min": 1e-3 / 60.0}
 _LARGEST = 1e7  # bytes; a path of a million points
 _HEADER = re.compile(r"^\s*([A-Za-z]+)\s*(?:[\[(_ ]\s*([A-Za-z/]+)\s*[\])]?)?\s*$")
 
@@ -52,8 +52,8 @@ def read_path(file: Path, unit: str = "m") -> PathPoints:
         OutputError: the file cannot be read.
         ConfigError: another ending, a missing column, a line that cannot be read (with its number), too few points.
     """
-    if unit not in ("m", "mm", "cm", "in"):
-        raise ConfigError(f'the unit of a path file is one of "m", "mm", "cm", "in", got {unit!r}')
+    if unit not in _LENGTHS:
+        raise ConfigError(f"unknown unit {unit!r} of a path file; {options(_LENGTHS, unit)}")
     text = _text(file)
     if file.suffix.lower() == ".csv":
         found = _csv(file, text, _UNITS[unit])
