@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -232,3 +234,66 @@ def test_contradictory_bounds_end_with_an_honest_status(kind: str, dim: int) -> 
     solver.reset()
     solver.quasi_static(x0)
     assert solver.solve(x0, max_iterations=50).status == "converged"
+
+
+def torque_and_cone(
+    kind: str, seed: int
+) -> tuple[_mpc.Solver, Vector, Vector, Vector, float, Callable[[Vector], tuple]]:
+    """A drawn problem with torque bounds and cone, and a trajectory of its own that keeps both.
+
+    The trajectory solves an easier problem (less force, a narrower cone); the torque bounds are drawn round it, from
+    0.03 to 3 N·m wide, and the problem then wants more force and leaves the cone.
+    """
+    robot, rng = catalogue_chain("lwr4"), np.random.default_rng([seed, 12])
+    mu, normal, angle = rng.uniform(0.2, 0.6), rng.uniform(40.0, 80.0), rng.uniform(0.0, 2.0 * np.pi)
+    direction, tangential = np.array([np.cos(angle), np.sin(angle)]), rng.uniform(0.5, 1.5) * mu * normal
+    easy, x0 = polishing(robot, kind, 3, bounds=True)
+    x0 = noisy(x0, robot.model.nv, rng)
+    easy.nodes.friction = 0.7 * mu
+    easy.nodes.force_reference[:, 2] = rng.uniform(20.0, 35.0)
+    easy.nodes.force_reference[:, :2] = 6.0 * mu * direction
+    found = easy.solve(x0, max_iterations=200, tolerance=1e-6)
+    assert found.status == "converged"
+    width, below = 10.0 ** rng.uniform(*WIDTH, found.us.shape), rng.uniform(0.0, 1.0, found.us.shape)
+    solver, _ = polishing(robot, kind, 3, bounds=True)
+    solver.nodes.force_reference[:, 2] = normal
+    solver.nodes.force_reference[:, :2] = tangential * direction
+    problem = Condensed(nodes_like(solver, robot, kind, 3), x0)
+    solver.nodes.torque_lower[:-1] = found.us - width * below - 1e-3
+    solver.nodes.torque_upper[:-1] = found.us + width * (1.0 - below) + 1e-3
+    solver.nodes.friction = mu
+    return solver, x0, found.us, problem.evaluate(found.us.ravel())[2], mu, problem.evaluate
+
+
+WIDTH = (0.5, 1.5)
+"""decades of N·m between the torque bounds"""
+CHOSEN = {"classical": slice(0, 5), "torque_feedback": slice(1, 5), "force_feedback": slice(1, None)}
+"""nodes whose force is not measured"""
+
+
+def cone_margin(forces: Vector, mu: float, kind: str) -> float:
+    chosen = forces[CHOSEN[kind]]
+    return float(np.min(mu * chosen[:, 2] - np.linalg.norm(chosen[:, :2], axis=1)))
+
+
+@pytest.mark.parametrize("kind", ["classical", "torque_feedback", "force_feedback"])
+def test_torque_bounds_and_cone_together(kind: str) -> None:
+    """Both bite in most of the problems; each is feasible, shown by a trajectory that is not the solver's answer."""
+    converged, both = 0, 0
+    for seed in range(60):
+        solver, x0, feasible, forces, mu, evaluate = torque_and_cone(kind, seed)
+        assert cone_margin(forces, mu, kind) >= 0.0
+        lower, upper = solver.nodes.torque_lower[:-1], solver.nodes.torque_upper[:-1]
+        assert np.all((lower < feasible) & (feasible < upper))
+        s = solver.solve(x0, max_iterations=30)
+        if s.status != "converged":
+            continue
+        converged += 1
+        assert s.violation <= 1e-4
+        cost, _, reached, _ = evaluate(s.us.ravel())
+        margin = cone_margin(reached, mu, kind)
+        assert margin >= -1e-3
+        assert cost < evaluate(feasible.ravel())[0]
+        both += margin < 1e-3 and bool(np.any((s.us < lower + 1e-4) | (s.us > upper - 1e-4)))
+    assert converged >= 56  # 92 %
+    assert both >= 15

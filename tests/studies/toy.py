@@ -116,12 +116,12 @@ class ToyStudy(Study[ToyConfig]):
     def figures(self, config: ToyConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return []
 
-    def tuning(self, controller: str) -> Tuning:
+    def tuning(self, controller: str, case: str | None = None) -> Tuning:
         if controller == "other":
             return super().tuning(controller)
         return Tuning(
             {"gains.a": Range(1e-3, 1e2, log=True), "gains.b": Range(-10.0, 10.0)},
-            [self.case("fine")],
+            [self.case(case or "fine")],
             lambda results: _mean(results),
             {"gains.a": 1.0, "gains.b": 5.0},
         )

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "array.hpp"
+#include "bound_search.hpp"
 #include "bounds.hpp"
 #include "force_feedback.hpp"
 #include "output_force.hpp"
@@ -50,7 +51,8 @@ template <class L> class Solver {
                dx.allocate(N + 1) && du.allocate(N) && costates.allocate(N + 1) &&
                filter_cost.allocate(opts.filter_size) && filter_infeasibility.allocate(opts.filter_size) &&
                (!opts.bounds || (bounds.allocate(N + 1) && multipliers.allocate(N + 1) && terms.allocate(N + 1) &&
-                                 expansions.allocate(N + 1)));
+                                 expansions.allocate(N + 1) && from_x.allocate(N + 1) && from_u.allocate(N) &&
+                                 from_values.allocate(N + 1) && to_values.allocate(N + 1)));
     }
 
     void prepare(const NodeData *nodes, int k) {
@@ -89,6 +91,9 @@ template <class L> class Solver {
     Array<StageBounds> bounds;
     Array<BoundTerms> terms;
     Array<Expansion<L>> expansions;
+    Array<Row<L>> from_x; // the direction before a Newton step, and the bounds' values before and after it
+    Array<Lanes> from_u;
+    Array<BoundValues> from_values, to_values;
 
     void evaluate(Iterate<L> &it);
     const Expansion<L> &expansion(const Iterate<L> &it, int k) const {
@@ -97,7 +102,8 @@ template <class L> class Solver {
     bool backward(const Iterate<L> &it);
     void forward(const Iterate<L> &it);
     bool newton_step(Report &report);
-    void bounded_values(const Iterate<L> &it, int k, Lanes &torque, double *force) const;
+    void bounded_values(const Iterate<L> &it, int k, BoundValues &values) const;
+    double search_direction(const Iterate<L> &it);
     DualError model_error(const Iterate<L> &it);
     double update_multipliers();
     bool bounded_step(double tolerance, Report &report);
@@ -164,15 +170,15 @@ template <class L> bool Solver<L>::newton_step(Report &report) {
 
 // Torque and force of a stage, linearised at the current direction.
 template <class L>
-void Solver<L>::bounded_values(const Iterate<L> &it, int k, Lanes &torque, double *force) const {
+void Solver<L>::bounded_values(const Iterate<L> &it, int k, BoundValues &values) const {
     const bool running = k < options.horizon;
-    torque = running ? it.u[k] + du[k] : zero();
+    values.torque = running ? it.u[k] + du[k] : zero();
     const int rows = bounds[k].cone ? larger(bounds[k].forces, 3) : bounds[k].forces;
     for (int c = 0; c < rows; ++c) {
         Row<L> row_x;
         Lanes row_u;
         force_row(it.node[k], c, row_x, row_u);
-        force[c] = it.node[k].force[c] + dot(row_x, dx[k]) + (running ? sum(row_u * du[k]) : 0);
+        values.force[c] = it.node[k].force[c] + dot(row_x, dx[k]) + (running ? sum(row_u * du[k]) : 0);
     }
 }
 
@@ -180,12 +186,11 @@ void Solver<L>::bounded_values(const Iterate<L> &it, int k, Lanes &torque, doubl
 template <class L> DualError Solver<L>::model_error(const Iterate<L> &it) {
     DualError error;
     for (int k = 0; k <= options.horizon; ++k) {
-        Lanes torque;
-        double force[max_contact];
-        bounded_values(it, k, torque, force);
+        bounded_values(it, k, from_values[k]);
+        const BoundValues &at = from_values[k];
         BoundVector predicted;
-        predicted_gradient(bounds[k], terms[k], torque, force, predicted);
-        bound_terms(bounds[k], multipliers[k], torque, force, terms[k]);
+        predicted_gradient(bounds[k], terms[k], at.torque, at.force, predicted);
+        bound_terms(bounds[k], multipliers[k], at.torque, at.force, terms[k]);
         error.add(bounds[k], predicted, terms[k].gradient);
     }
     return error;
@@ -202,9 +207,35 @@ template <class L> double Solver<L>::update_multipliers() {
     return worst;
 }
 
+// Goes from the direction before a Newton step to the best on the way to the new one; returns the share of the way.
+template <class L> double Solver<L>::search_direction(const Iterate<L> &it) {
+    const int N = options.horizon;
+    double begin = 0, end = 0; // slope of the cost
+    for (int k = 0; k <= N; ++k) {
+        bounded_values(it, k, to_values[k]);
+        Row<L> step_x = dx[k];
+        add_scaled(step_x, from_x[k], -1);
+        const Lanes none = zero(), before = k < N ? from_u[k] : none, after = k < N ? du[k] : none;
+        const Expansion<L> &cost = it.node[k];
+        begin += cost_slope(cost, regularisation, from_x[k], before, step_x, after - before);
+        end += cost_slope(cost, regularisation, dx[k], after, step_x, after - before);
+    }
+    const double share = best_share([&](double s) {
+        double slope = begin + s * (end - begin);
+        for (int k = 0; k <= N; ++k) slope += term_slope(bounds[k], multipliers[k], from_values[k], to_values[k], s);
+        return slope;
+    });
+    for (int k = 0; k <= N && share < 1; ++k) {
+        scale(dx[k], share);
+        add_scaled(dx[k], from_x[k], 1 - share);
+        if (k < N) du[k] = from_u[k] * (1 - share) + du[k] * share;
+    }
+    return share;
+}
+
 // Direction under the bounds, by the method of bounds.hpp.
 template <class L> bool Solver<L>::bounded_step(double tolerance, Report &report) {
-    constexpr int most_factorisations = 12;
+    constexpr int most_factorisations = 60;
     const Iterate<L> &it = current();
     const int N = options.horizon;
     for (int k = 0; k <= N; ++k) {
@@ -215,8 +246,13 @@ template <class L> bool Solver<L>::bounded_step(double tolerance, Report &report
     for (int i = 0; i < most_factorisations; ++i) {
         for (int k = 0; k <= N; ++k)
             bounded_expansion(bounds[k], terms[k], it.node[k], k < N ? it.u[k] : zero(), expansions[k]);
+        for (int k = 0; k <= N; ++k) {
+            from_x[k] = dx[k];
+            if (k < N) from_u[k] = du[k];
+        }
         if (!newton_step(report)) return false;
-        if (!model_error(it).small()) continue;       // the active set moved
+        const bool whole = i == 0 || search_direction(it) == 1; // the first step closes the gaps of the dynamics
+        if (!model_error(it).small() || !whole) continue;       // the active set moved
         if (update_multipliers() <= tolerance) break; // within the bounds
     }
     return true;

@@ -111,7 +111,10 @@ def study(
     ] = False,
     tune: Annotated[
         str | None,
-        typer.Option(metavar="CONTROLLER", help="Searches for this controller's best parameters instead."),
+        typer.Option(
+            metavar="CONTROLLER",
+            help="Searches for this controller's best parameters instead, on the robot of a --case.",
+        ),
     ] = None,
     trials: Annotated[
         int | None, typer.Option(min=1, help="Parameter sets that --tune tries.", show_default="64")
@@ -128,8 +131,13 @@ def study(
     if tune is not None:
         from pliant.cli.tune import tune_command
 
-        _refuse("--tune", rest | {"--resume": resume})
-        tune_command(_out, _err, name or "stack", tune, trials or 64, seed or 0, set_ or [], out, jobs, scheduler)
+        _refuse(
+            "--tune", {"--seeds": seeds, "--logs": logs, "--resume": resume, "more than one --case": (case or [])[1:]}
+        )
+        where = case[0] if case else None
+        tune_command(
+            _out, _err, name or "stack", tune, where, trials or 64, seed or 0, set_ or [], out, jobs, scheduler
+        )
         return
     if trials is not None or seed is not None:
         raise ConfigError("--trials and --seed belong to --tune CONTROLLER, which is missing")

@@ -31,6 +31,7 @@ def tune_command(
     complain: Console,
     name: str,
     controller: str,
+    case: str | None,
     trials: int,
     seed: int,
     assignments: Sequence[str],
@@ -44,7 +45,7 @@ def tune_command(
         PliantError: bad input; nothing was run.
     """
     require_optuna()
-    tuning = find_tuning(get_study(name), controller)
+    tuning = find_tuning(get_study(name), controller, case)
     changes = parse_assignments(assignments)
     tuning = replace(tuning, runs=[merged(config, changes) for config in tuning.runs])
     check_buildable(name, merged(tuning.runs[0], tuning.changes(tuning.start)))
@@ -59,7 +60,13 @@ def tune_command(
         raise KeyboardInterrupt(f"the best of {len(made)} of {trials} trials is kept in {folder}") from None
     finally:
         if made:
-            about = {"study": name, "controller": controller, "seed": seed, "assignments": list(assignments)}
+            about = {
+                "study": name,
+                "controller": controller,
+                "case": case,
+                "seed": seed,
+                "assignments": list(assignments),
+            }
             _finish(console, tuning, made, about, folder)
 
 

@@ -146,6 +146,12 @@ class StackConfig(ControllerConfig):
     )
     law: Law = Field(default=Law.CAPPED, description="force on the way back to the target")
     phases: PhaseConfig = Field(default=PhaseConfig(), description="thresholds of the phase logic")
+    joint_damping: float = Field(
+        default=0.0,
+        ge=0.0,
+        description="of every joint, added by the controller; what a plain spring needs to come to rest",
+        json_schema_extra={"unit": "N·m s/rad", "minimum": 0.0, "maximum": 20.0},
+    )
     gravity_compensation: bool = Field(
         default=False, description="add the model's gravity torque; off where the robot compensates itself"
     )

@@ -23,6 +23,7 @@ def build_stack(robot: Robot, config: StackConfig, period: float) -> Stack:
         period,
         law=config.law,
         phases=config.phases.settings(),
+        joint_damping=config.joint_damping,
         gravity_compensation=config.gravity_compensation,
     )
 
@@ -54,7 +55,11 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
         _stack("stack-paper", Law.STACK_PRINTED, "the same with the law of Tiseo et al. 2020, Algorithm 1, as printed"),
         _stack("stack-corrected", Law.STACK_CORRECTED, "the same with that law's sign turned round"),
         _stack("stack-hapfic", Law.HAPFIC, "the same with the law of Tiseo et al. 2021, eq. 1, as printed"),
-        _stack("spring", Law.SPRING, "the same force profiles as plain springs, without an attractor and undamped"),
+        _stack(
+            "spring",
+            Law.SPRING,
+            "the same force profiles as plain springs, without an attractor; undamped unless joint_damping is given",
+        ),
         ControllerEntry(
             "operational-space",
             "Khatib's operational-space controller with a dynamically consistent posture",

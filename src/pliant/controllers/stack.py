@@ -64,6 +64,7 @@ class Stack(Controller[StackState]):
         *,
         law: Law = Law.CAPPED,
         phases: PhaseSettings | None = None,
+        joint_damping: float = 0.0,
         gravity_compensation: bool = False,
     ) -> None:
         """
@@ -73,6 +74,7 @@ class Stack(Controller[StackState]):
             period: s between two steps.
             law: force on the way back; `capped` unless you compare.
             phases: thresholds of the phase logic.
+            joint_damping: N·m·s/rad, times the estimated joint velocity, against it; the attractor needs none.
             gravity_compensation: adds the model's gravity torque; leave it off where the robot compensates itself.
 
         Raises:
@@ -81,6 +83,8 @@ class Stack(Controller[StackState]):
         """
         if not (math.isfinite(period) and period > 0.0):
             raise ConfigError(f"the control period must be finite and above zero, got {period} s")
+        if not (math.isfinite(joint_damping) and joint_damping >= 0.0):
+            raise ConfigError(f"joint_damping must be finite and not negative, got {joint_damping}")
         labels = [task.label for task in tasks]
         if not tasks or len(set(labels)) != len(labels):
             raise ConfigError(f"a stack needs one or more tasks with different labels, got {labels}")
@@ -89,6 +93,7 @@ class Stack(Controller[StackState]):
         self.period = period
         self.law = Law(law)
         self.phases = phases or PhaseSettings()
+        self.joint_damping = joint_damping
         self.gravity_compensation = gravity_compensation
         self._frames = [robot.frame_id(task.frame) for task in tasks]
         self._core = _impedance.Stack(
@@ -139,7 +144,7 @@ class Stack(Controller[StackState]):
             pin.computeJointJacobians(model, work.data, estimate.q)
             for frame in self._frames:
                 pin.updateFramePlacement(model, work.data, frame)
-            bias = pin.computeGeneralizedGravity(model, work.data, estimate.q) if self.gravity_compensation else None
+            bias = self._bias(estimate, work.data)
             code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune)
         except (ValueError, TypeError, RuntimeError) as error:
             raise ShapeError(self._misshapen(estimate, desired, error)) from error
@@ -148,6 +153,16 @@ class Stack(Controller[StackState]):
         n = self.robot.n
         command = Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out))
         return command, StackState(memory, tunings, work)
+
+    def _bias(self, estimate: Estimate, data: pin.Data) -> Array | None:
+        """(n,) N·m beside the tasks; None for nothing."""
+        gravity = (
+            pin.computeGeneralizedGravity(self.robot.model, data, estimate.q) if self.gravity_compensation else None
+        )
+        if self.joint_damping == 0.0:
+            return gravity
+        damping = -self.joint_damping * self.robot.vector(estimate.v, "v")
+        return damping if gravity is None else gravity + damping
 
     def _read(
         self, reference: Reference, last: tuple[ImpedanceTuning | None, ...]

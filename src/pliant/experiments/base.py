@@ -122,6 +122,7 @@ class Study(ABC, Generic[C]):
         """Tables as the paper prints them, in Markdown, for the study's report; empty where there are none."""
         return ""
 
-    def tuning(self, controller: str) -> Tuning:
-        """How the parameters of a controller are searched. Raises ConfigError if the study does not say."""
+    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+        """How the parameters of a controller are searched, on the robot and with the delays of a case (None: of the
+        study's choice). Raises ConfigError if the study does not say."""
         raise ConfigError(f"study {self.name!r} cannot be tuned; a study can if it overrides `Study.tuning`")

@@ -77,17 +77,17 @@ class Tuning:
         return value if math.isfinite(value) else PENALTY
 
 
-def find_tuning(study: Study[Any], controller: str) -> Tuning:
-    """How a controller of a study is tuned.
+def find_tuning(study: Study[Any], controller: str, case: str | None = None) -> Tuning:
+    """How a controller of a study is tuned for a case.
 
     Raises:
-        ConfigError: the study has no such controller, or does not say how it is tuned.
+        ConfigError: the study has no such controller or case, or does not say how it is tuned.
     """
     if controller not in study.controllers:
         raise ConfigError(
             f"study {study.name!r} has no controller {controller!r}; {options(study.controllers, controller)}"
         )
-    return study.tuning(controller)
+    return study.tuning(controller, case)
 
 
 def nested(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from pliant.estimation import (
     WrenchEstimator,
 )
 from pliant.experiments.base import Experiment
+from pliant.experiments.model_error import with_mass_error
 from pliant.interfaces import Controller, Estimator, Plant
 from pliant.mpc import MpcConfig, MpcController
 from pliant.references.phases import Lookahead
@@ -46,13 +47,14 @@ def build(config: PolishingConfig) -> Experiment:
     """
     robot = robot_of(config)
     parameters = config.parameters()
-    controller: Controller[Any] = config.entry.build(robot, parameters, config.period)
+    believed = with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses"))
+    controller: Controller[Any] = config.entry.build(believed, parameters, config.period)
     channels: Mapping[str, Any] = getattr(controller, "channels", {})
     lookahead = Lookahead(parameters.horizon, parameters.dt, lead_of(controller))
     return Experiment(
         robot=robot,
         plant=plant_of(config, robot),
-        estimator=estimator_of(config, robot, parameters),
+        estimator=estimator_of(config, believed, parameters),
         source=polishing_source(config, robot, lookahead),
         controller=controller,
         channels=tuple(Channel(name, about.unit) for name, about in channels.items()),

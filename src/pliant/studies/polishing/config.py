@@ -134,6 +134,13 @@ class PolishingConfig(CaseConfig):
         description="of the tool, beside its known 0.4 kg",
         json_schema_extra={"unit": "kg"},
     )
+    model_mass_error: float = Field(
+        default=0.0,
+        ge=0.0,
+        lt=1.0,
+        description="share by which each link's mass is off in the controller's model, drawn uniformly within ±",
+        json_schema_extra={"unit": "1"},
+    )
     delay_error: float = Field(
         default=0.0,
         description="of δ_o in controllers that predict: believed minus true",

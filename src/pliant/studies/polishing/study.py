@@ -45,8 +45,8 @@ class Polishing(Study[PolishingConfig]):
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         return overview.summary_figures(results, folder)
 
-    def tuning(self, controller: str) -> Tuning:
-        return tuning_of(self.case("tables-2-3-4"), controller)
+    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+        return tuning_of(self.case(case or "tables-2-3-4"), controller)
 
     def report(self, results: Sequence[Result]) -> str:
         return tables.report(results)

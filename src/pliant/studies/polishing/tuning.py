@@ -38,8 +38,8 @@ def tuning_of(case: PolishingConfig, controller: str) -> Tuning:
 
 
 def _runs(config: PolishingConfig) -> Sequence[PolishingConfig]:
-    """Both tilts, with and without the drives' torque loop; δ_o as in the tables."""
-    delay = 5e-3 if config.controller == BEST else 0.0
+    """Both tilts, with and without the drives' torque loop; δ_o of the case, 5 ms for the best."""
+    delay = 5e-3 if config.controller == BEST else config.imperfections.computation_delay
     return [
         merged(
             config,

@@ -10,6 +10,7 @@ from pliant.controllers.step_limit import StepLimit
 from pliant.errors import ConfigError
 from pliant.estimation import DirectEstimator
 from pliant.experiments.base import Experiment
+from pliant.experiments.model_error import with_mass_error
 from pliant.references.postures.posture import PostureOptions
 from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.retuned import Retuned, TuningChange
@@ -19,6 +20,7 @@ from pliant.references.trajectories.trajectory import Hold
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import JointEffects, MujocoPlant, Push, Scene, Surface, random_pushes, wall
+from pliant.simulation.seeding import generator
 from pliant.spatial import frame_with_z_along
 from pliant.studies.stack.config import Path, StackConfig
 from pliant.telemetry.schema import Channel
@@ -50,7 +52,8 @@ def build(config: StackConfig) -> Experiment:
         pushes=_pushes(config, rng_pushes),
         observe=[tool, elbow],
     )
-    controller = config.entry.build(robot, parameters, config.period)
+    believed = with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses"))
+    controller = config.entry.build(believed, parameters, config.period)
     channels = tuple(Channel(name, about.unit) for name, about in getattr(controller, "channels", {}).items())
     if config.torque_step is not None:
         controller = StepLimit(controller, robot, config.torque_step)

@@ -124,6 +124,14 @@ class StackConfig(CaseConfig):
         description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         json_schema_extra={"unit": "1"},
     )
+    model_mass_error: float = Field(
+        default=0.0,
+        ge=0.0,
+        lt=1.0,
+        description="share by which each link's mass is off in the model of a controller that has one, drawn uniformly"
+        " within ±",
+        json_schema_extra={"unit": "1"},
+    )
     wall: Wall | None = None
     pushes: Pushes | None = None
     retuning: Retuning | None = None

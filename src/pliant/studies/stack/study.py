@@ -8,11 +8,13 @@ from pathlib import Path
 from pliant.controllers.registry import CONTROLLERS
 from pliant.experiments.base import Experiment, Result, Study
 from pliant.experiments.config import merged
+from pliant.experiments.tuning import Tuning
 from pliant.robot import Robot
 from pliant.studies.stack import draw
 from pliant.studies.stack.build import build
 from pliant.studies.stack.config import CASES, StackConfig
 from pliant.studies.stack.measure import measure
+from pliant.studies.stack.tuning import tuning_of
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -54,6 +56,9 @@ class StackStudy(Study[StackConfig]):
 
     def figures(self, config: StackConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, folder)
+
+    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+        return tuning_of(self.case(case or "figure8-gazebo"), controller)
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         return draw.summary_figures(results, folder)

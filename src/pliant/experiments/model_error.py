@@ -1,0 +1,37 @@
+"""A controller's model that is wrong about the robot: what every model-based controller must bear."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.errors import ConfigError
+from pliant.robot import Robot
+
+
+def with_mass_error(robot: Robot, share: float, rng: np.random.Generator) -> Robot:
+    """The robot as a controller believes it: every link's mass off by a share of its own.
+
+    Mass and inertia of a link are scaled by the same factor, drawn uniformly from 1 ± share; centres of mass, rotors
+    and kinematics stay. The plant keeps the robot that was given.
+
+    Args:
+        robot: the true one.
+        share: 0 … below 1; 0 gives the robot itself and draws nothing.
+        rng: of this draw alone.
+
+    Raises:
+        ConfigError: a share outside that range.
+    """
+    if not 0.0 <= share < 1.0:
+        raise ConfigError(f"the error of the model's masses must be a share of 0 … below 1, got {share:g}")
+    if share == 0.0:
+        return robot
+    model = robot.model.copy()
+    for joint in range(1, model.njoints):
+        factor = float(rng.uniform(1.0 - share, 1.0 + share))
+        true = model.inertias[joint]
+        model.inertias[joint] = pin.Inertia(factor * true.mass, true.lever, factor * true.inertia)
+    return replace(robot, model=model)
