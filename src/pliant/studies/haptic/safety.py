@@ -126,7 +126,8 @@ def _surface_below(target: tuple[float, float, float], config: HapticConfig) -> 
 
 
 def reachable_force(depth: float, surface_stiffness: float, stiffness: float, force_max: float, bound: float) -> float:
-    """Largest force on a surface: min(F_max, (x_b + p) K_e K_0/(K_e + K_0)).
+    """Force on a surface of a linear impedance: min(F_max, (x_b + p) K_e K_0/(K_e + K_0)). A lower bound of the largest
+    one where the profile stiffens beyond K_0 (tanh).
 
     Args:
         depth: p of the target below the surface, m.
