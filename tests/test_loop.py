@@ -9,6 +9,7 @@ import pytest
 
 from pliant import loop
 from pliant.errors import SignalError
+from pliant.guard import Fault
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
 from pliant.signals import Command, Estimate, Measurement, Reference, Tick
 
@@ -76,13 +77,20 @@ def test_the_loop_runs_its_stages_in_order_and_passes_state_on() -> None:
     assert set(ticks[0].wall) == {"plan", "control"}
 
 
-def test_a_measurement_that_is_not_finite_stops_before_a_command_is_made_from_it() -> None:
+def test_a_measurement_that_is_not_finite_is_passed_over_and_holds_the_last_torque() -> None:
     ticks: list[Tick] = []
     outcome = loop.run(Integrator(spoil_at=3), Believe(), Count(), Follow(), range(10), [ticks.append])
-    assert outcome.ticks == 3
-    assert outcome.failure is not None
-    assert "not finite at t = 0.0300 s" in outcome.failure
+    assert (outcome.ticks, outcome.failure) == (10, None)
+    assert [tick.guard for tick in ticks] == [0, 0, 0, int(Fault.NOT_FINITE), 0, 0, 0, 0, 0, 0]
+    assert ticks[3].command.torque[0] == ticks[2].command.torque[0]
     assert all(np.isfinite(tick.command.torque).all() for tick in ticks)
+
+
+def test_a_first_measurement_that_is_not_finite_ends_the_run_before_it_begins() -> None:
+    outcome = loop.run(Integrator(spoil_at=0), Believe(), Count(), Follow(), range(10))
+    assert outcome.ticks == 0
+    assert outcome.failure is not None
+    assert "not finite at t = 0.0000 s" in outcome.failure
 
 
 def test_a_signal_error_of_a_stage_ends_the_run_with_its_reason() -> None:

@@ -6,11 +6,14 @@ A state may own buffers that `step` reuses: the state passed in is consumed, kee
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, Literal, Protocol, TypeVar
 
 from pliant.signals import Command, Estimate, Measurement, Reference, Tick, Truth
 
 State = TypeVar("State")
+
+Compensation = Literal["none", "gravity", "gravity+coriolis"]
+"""what a robot's own controller adds, invisibly, to the torque that is sent"""
 
 
 class Estimator(ABC, Generic[State]):
@@ -57,6 +60,16 @@ class Plant(ABC, Generic[State]):
 
     period: float
     """control period, s"""
+
+    @property
+    def noisy(self) -> frozenset[str]:
+        """Fields of `Measurement` whose noise says that no two readings are equal."""
+        return frozenset()
+
+    @property
+    def compensates(self) -> Compensation:
+        """What the robot adds to the torque that is sent, by itself."""
+        return "none"
 
     @abstractmethod
     def init(self) -> tuple[Measurement, State]:

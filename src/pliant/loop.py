@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import time
+import traceback
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from pliant.errors import RunFailedError, SignalError
+from pliant.errors import ConfigError, PliantError, RobotError, RunFailedError, ShapeError, SignalError
+from pliant.guard import Fault, Guard
 from pliant.interfaces import Controller, Estimator, Observer, Plant, ReferenceSource
+from pliant.robot import Robot
 from pliant.signals import Measurement, Tick
-from pliant.spatial import all_finite
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +35,9 @@ def run(
     controller: Controller[Any],
     clock: Iterable[object],
     observers: Sequence[Observer] = (),
+    robot: Robot | None = None,
 ) -> Outcome:
-    """Runs a control loop until the clock ends, or until a signal is not finite.
+    """Runs a control loop until the clock ends, or until something fails.
 
     Args:
         plant: the robot in its world.
@@ -42,40 +46,61 @@ def run(
         controller: estimate and reference → command.
         clock: one item per period; `range(n)` runs n periods as fast as they go.
         observers: called once a period with a `Tick`; telemetry and the live page attach here and nowhere else.
+        robot: whose torque limits and gravity the guard knows; None: it cuts off nothing, and holds the last torque
+            where it would compensate gravity.
 
     Returns:
-        How many periods were completed, and why it stopped early if it did. A plant that fails stops the run, and so
-        does a measurement that is not finite, before a command is computed from it: the last torque sent is a safe one
-        and everything recorded is kept.
+        How many periods were completed, and why it stopped early if it did. `Guard` keeps signals that are not sound
+        from the parts, and what they return from the robot. An exception of a part ends the run in order: the robot
+        was sent a sound torque last, and everything observed until then is kept.
+
+    Raises:
+        ShapeError: the first measurement does not fit the robot.
     """
+    guard = Guard(plant, robot)
     measurement, world = plant.init()
-    est = ref = ctl = None
+    est = ref = ctl = estimate = reference = command = None
     ticks = 0
-    for _ in clock:
-        if not _is_finite(measurement):
-            return Outcome(ticks, measurement.time, f"a measurement was not finite at t = {measurement.time:.4f} s")
-        start = time.perf_counter()
-        try:
-            est = estimator.init(measurement) if ticks == 0 else est
-            estimate, est = estimator.step(measurement, est)
-            ref = source.init(estimate) if ticks == 0 else ref
-            reference, ref = source.step(estimate, ref)
-            ctl = controller.init(estimate) if ticks == 0 else ctl
-            planned = time.perf_counter()
-            command, ctl = controller.step(estimate, reference, ctl)
-        except SignalError as error:
-            return Outcome(ticks, measurement.time, f"{error} at t = {measurement.time:.4f} s")
-        wall = {"plan": planned - start, "control": time.perf_counter() - planned}
-        tick = Tick(measurement, estimate, reference, command, plant.truth(world), wall)
-        for observe in observers:
-            observe(tick)
-        try:
+    try:
+        watched = guard.init(measurement)
+        for _ in clock:
+            start = planned = time.perf_counter()
+            fresh = command is None  # the first tick: every part starts
+            fault = guard.measurement(measurement, watched)
+            if not fault:
+                est = estimator.init(measurement) if fresh else est
+                found, est = estimator.step(measurement, est)
+                fault = guard.estimate(found, len(measurement.q))
+                estimate = estimate if fault else found
+            if not fault and estimate is not None:
+                ref = source.init(estimate) if fresh else ref
+                wanted, ref = source.step(estimate, ref)
+                fault = guard.reference(wanted)
+                reference = reference if fault else wanted
+            if not fault and estimate is not None and reference is not None:
+                ctl = controller.init(estimate) if fresh else ctl
+                planned = time.perf_counter()
+                answer, ctl = controller.step(estimate, reference, ctl)
+                answer, fault = guard.command(answer, len(measurement.q))
+                command = command if fault is Fault.COMMAND else answer
+            if estimate is None or reference is None or command is None:
+                raise SignalError(f"the first tick cannot be computed: {fault.words}")
+            command = guard.settled(command, fault, measurement, watched)
+            wall = {"plan": planned - start, "control": time.perf_counter() - planned}
+            tick = Tick(measurement, estimate, reference, command, plant.truth(world), wall, int(fault))
+            for observe in observers:
+                observe(tick)
             measurement, world = plant.step(command, world)
-        except RunFailedError as error:
-            return Outcome(ticks, measurement.time, f"{error} at t = {measurement.time:.4f} s")
-        ticks += 1
+            ticks += 1
+    except Exception as error:  # whatever a part raises: the run ends in order
+        if command is None and isinstance(error, ConfigError | ShapeError | RobotError):
+            raise  # parts that do not fit together: nothing has run
+        return _ended(ticks, measurement, error)
     return Outcome(ticks, measurement.time)
 
 
-def _is_finite(measurement: Measurement) -> bool:
-    return all_finite(measurement.q, measurement.v, measurement.torque, *measurement.wrenches.values())
+def _ended(ticks: int, measurement: Measurement, error: Exception) -> Outcome:
+    if not isinstance(error, PliantError):
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        error = RunFailedError(f"{type(error).__name__} in {Path(where.filename).name}, line {where.lineno}: {error}")
+    return Outcome(ticks, measurement.time, f"{error} at t = {measurement.time:.4f} s")

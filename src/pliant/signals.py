@@ -255,3 +255,5 @@ class Tick:
     """None on a real robot"""
     wall: Mapping[str, float] = field(default_factory=_nothing)
     """stage → seconds of wall time it took; never part of the reproducible log"""
+    guard: int = 0
+    """what the guard found wrong in this tick, a `pliant.guard.Fault`; 0: nothing"""

@@ -90,6 +90,7 @@ EXPECTED = {
     "planner/progress": lambda t: t.reference.diagnostics["planner/progress"],
     "ee/energy_stored": lambda t: t.command.diagnostics["ee/energy_stored"],
     "ee/force": lambda t: t.command.diagnostics["ee/force"],
+    "guard/fault": lambda t: float(t.guard),
     "gain/matrix": lambda t: t.command.diagnostics["gain/matrix"],
 }
 ROTATIONS = {

@@ -51,13 +51,14 @@ class StepLimit(Controller[StepLimitState]):
             raise ConfigError(f"the torque step must be a share above zero of the torque limit, got {share}")
         self.inner = inner
         self.step_max: Array = share * robot.torque_limit
+        self._limit: Array = robot.torque_limit
 
     def init(self, estimate: Estimate) -> StepLimitState:
         return StepLimitState(self.inner.init(estimate), estimate.q, np.zeros_like(estimate.q), 0.0)
 
     def step(self, estimate: Estimate, reference: Reference, state: StepLimitState) -> tuple[Command, StepLimitState]:
         command, inner = self.inner.step(estimate, reference, state.inner)
-        sent = estimate.torque_sent
+        sent = np.clip(np.nan_to_num(estimate.torque_sent, nan=0.0), -self._limit, self._limit)
         torque = np.minimum(np.maximum(command.torque, sent - self.step_max), sent + self.step_max)
         held_back = command.torque - torque
         energy = state.energy + float(state.held_back @ (estimate.q - state.q))

@@ -56,7 +56,9 @@ def run_case(
     if progress is not None:
         watchers.append(_Reporter(progress, ticks))
     with recorder:
-        outcome = loop.run(wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), watchers)
+        outcome = loop.run(
+            wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), watchers, wired.robot
+        )
         recorder.close(outcome.failure)
     log = recorder.log()
     return _measured(study, config, wired, log, outcome.failure, folder, figures)

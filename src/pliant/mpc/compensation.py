@@ -66,7 +66,8 @@ class Compensator:
 
     def init(self, estimate: Estimate) -> CompensationState:
         """State before the first step: what was sent so far goes on."""
-        sent = np.array(estimate.torque_sent)
+        limit = self._problem.torque_limit
+        sent = np.clip(np.nan_to_num(estimate.torque_sent, nan=0.0), -limit, limit)
         return CompensationState((sent,) * (self._count + 1), (sent,) * self._averaged)
 
     def disturbance(self, estimate: Estimate) -> Array:

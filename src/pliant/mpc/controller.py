@@ -126,7 +126,8 @@ class MpcController(Controller[MpcState]):
         disturbance = self.compensator.disturbance(estimate)
         if all_finite(disturbance):
             state.disturbance = disturbance
-        if estimate.time >= state.next_solve - _TICK:
+        turned_back = estimate.time < state.next_solve - self.config.period - _TICK
+        if turned_back or estimate.time >= state.next_solve - _TICK:
             self._solve(estimate, reference, x, R_world_task, state)
             state.next_solve = estimate.time + self.config.period
         wanted, source = self._torque(estimate.time, x, state)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,10 +56,10 @@ def torque_from(plan: Plan, time: float, x: Array | None, config: MpcConfig) -> 
         config: says what happens between two solves.
 
     Returns:
-        (n,) N·m, or None if the plan's horizon is over.
+        (n,) N·m, or None if the plan's horizon is over or has not begun.
     """
-    step = int((time - plan.time) / config.dt + 1e-9)
-    if step >= len(plan.torques):
+    step = math.floor((time - plan.time) / config.dt + 1e-9)
+    if not 0 <= step < len(plan.torques):
         return None
     if step == 0 and config.between == "riccati" and x is not None:
         return plan.torques[0] - plan.feedback_gain @ (x - plan.x0)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from pliant.errors import ConfigError, options
-
-Compensation = Literal["none", "gravity", "gravity+coriolis"]
+from pliant.interfaces import Compensation
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, RunFailedError
-from pliant.interfaces import Plant
+from pliant.interfaces import Compensation, Plant
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
 from pliant.signals import Command, Measurement, Truth
@@ -115,6 +115,10 @@ class MujocoPlant(Plant[World]):
         self._felt = {s: [f for f in self._parts.values() if robot.carries(s.frame, f)] for s in self.sensors}
 
     # ------------------------------------------------------------------ Plant
+
+    @property
+    def compensates(self) -> Compensation:
+        return self.joints.compensation
 
     def init(self) -> tuple[Measurement, World]:
         data = mujoco.MjData(self.model)

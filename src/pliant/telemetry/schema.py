@@ -125,6 +125,7 @@ def groups(tick: Tick, info: RunInfo, units: Sequence[Channel] = ()) -> Groups:
         more_arrays, more_scalars = _diagnostics(tick, name, (*units, *DIAGNOSTICS))
         arrays += more_arrays
         scalars += more_scalars
+    scalars.append(Group(lambda tick: (tick.guard,), (Channel("guard/fault", "1"),)))
     if contacts := tuple(tick.estimate.contacts):
         named = tuple(Channel(f"estimate/{frame}/contact", "1") for frame in contacts)
         scalars.append(_mapping("estimate.contacts", contacts, named))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pliant.interfaces import Plant
+from pliant.interfaces import Compensation, Plant
 from pliant.live.link.messages import Pull
 from pliant.live.loop.requests import Desk
 from pliant.signals import Command, Measurement, Truth
@@ -51,6 +51,10 @@ class SteeredPlant(Plant[SteeredWorld]):
         """None if the plant cannot be changed"""
         self.built = inner.config if isinstance(inner, ImperfectPlant) else _perfect(inner)
         """its imperfections"""
+
+    @property
+    def compensates(self) -> Compensation:
+        return self.inner.compensates
 
     def init(self) -> tuple[Measurement, SteeredWorld]:
         measurement, world = self.inner.init()

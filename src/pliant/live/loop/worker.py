@@ -69,7 +69,7 @@ class Worker:
         failure: str | None = None
         try:
             failure = loop.run(
-                wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), observers
+                wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), observers, wired.robot
             ).failure
         except PliantError as error:
             failure = str(error)

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError
-from pliant.interfaces import Plant
+from pliant.interfaces import Compensation, Plant
 from pliant.signals import Command, Measurement, Truth
 from pliant.simulation.imperfections.actuation import Actuation, ActuationState
 from pliant.simulation.imperfections.config import Imperfections
@@ -87,6 +87,14 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         self._delay: Delay[Array] = Delay(whole_periods(config.computation_delay, tick, "computation delay"))
         self._ripple = Ripple(config.ripple, tick)
         _check_damping(inner, config.joint_damping)
+
+    @property
+    def noisy(self) -> frozenset[str]:
+        return self.config.sensing.noisy
+
+    @property
+    def compensates(self) -> Compensation:
+        return self.inner.compensates
 
     def init(self) -> tuple[Measurement, ImperfectWorld]:
         """The first measurement, and the robot as it stands, holding itself with `holding_torque`."""

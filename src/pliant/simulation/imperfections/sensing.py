@@ -33,6 +33,17 @@ class SensingConfig(Config):
     torque_gain_error: float = quantity(0.0, "1", "largest relative error of a joint torque sensor", ge=0.0, lt=1.0)
     torque_offset: float = quantity(0.0, "N·m", "largest offset of a joint torque sensor", ge=0.0, le=1e3)
 
+    @property
+    def noisy(self) -> frozenset[str]:
+        """Fields of `Measurement` of which no two readings are equal."""
+        noise = {
+            "q": self.noise_q,
+            "v": self.noise_v,
+            "torque": self.noise_torque,
+            "wrenches": max(self.noise_force, self.noise_moment),
+        }
+        return frozenset(name for name, std in noise.items() if np.max(std) > 0.0)
+
 
 @dataclass(slots=True)
 class SensingState:
