@@ -12,7 +12,7 @@ JOINTS = tuple(f"lwr_{i}" for i in range(7))
 
 def make_tick(k: int, seed: int = 0, period: float = 1e-3) -> Tick:
     """Tick number k: random numbers that depend on the seed and on k alone."""
-    rng = np.random.default_rng([seed, k])
+    rng = np.random.default_rng([seed, abs(k)])
     time = k * period
 
     def vector(size: int) -> np.ndarray:

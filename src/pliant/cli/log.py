@@ -20,7 +20,7 @@ def log_command(console: Console, file: Path, plot: bool, out: Path | None) -> N
     log = Log.open(file)
     console.print(describe(log))
     if log.truncated:
-        console.print("the log ends before its end: what is shown is what was written until then", style="yellow")
+        console.print("the log is cut off or damaged: what is shown is what could be read", style="yellow")
     if plot:
         for figure in plot_log(log, out or file.with_suffix("")):
             console.print(f"figure  {figure}", markup=False, highlight=False, soft_wrap=True)

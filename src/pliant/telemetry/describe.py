@@ -92,7 +92,8 @@ def _header(log: Log) -> RenderableType:
         grid.add_row(Text("failed", style="bold red"), Text(log.failure, style="red"))
     if log.truncated:
         grid.add_row(
-            Text("cut off", style="bold red"), Text("the file ends before its end; this is what it still holds")
+            Text("cut off", style="bold red"),
+            Text("the file ends before its end or is damaged; this is what it still holds"),
         )
     return grid
 

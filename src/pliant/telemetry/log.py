@@ -18,6 +18,9 @@ from pliant.telemetry.info import RunInfo
 from pliant.telemetry.mcap.reader import Contents, read
 from pliant.telemetry.mcap.topics import FIELDS, PREFIX
 
+CLOCK = "pliant.clock"
+"""metadata record of a run whose clock started below zero: MCAP has no such times, so the file's clock is ahead"""
+
 
 @dataclass(frozen=True, slots=True)
 class LogChannel:
@@ -60,12 +63,14 @@ class Log:
         self.source = source
         """where it came from"""
         self.truncated = not contents.complete
-        """whether the file ends before its end: everything up to there is here"""
+        """whether the file ends before its end or is damaged: what could be read up to there is here"""
         self.metadata: Mapping[str, Mapping[str, str]] = MappingProxyType(contents.metadata)
         """name → metadata record of the file"""
         self.info = RunInfo.from_metadata(contents.metadata["pliant"])
-        self._stored = _channels(contents)
-        self._phases = contents.texts(f"{PREFIX}/reference/phase")
+        begin = int(contents.metadata.get(CLOCK, {}).get("zero_ns", "0"))
+        self._stored = _channels(contents, begin)
+        phases = contents.texts(f"{PREFIX}/reference/phase")
+        self._phases = [(time - 1e-9 * begin, text) for time, text in phases]
         self._arrays: dict[str, tuple[Array, Array]] = {}
         self.channels: Mapping[str, LogChannel] = MappingProxyType(
             {name: self._describe(name, stored) for name, stored in sorted(self._stored.items())}
@@ -93,7 +98,12 @@ class Log:
             if not contents.complete:
                 raise OutputError(f"{name} is cut off or damaged before anything that pliant could read")
             raise OutputError(f"{name} is an MCAP file, but not one of pliant's: it has no metadata record 'pliant'")
-        return Log(name, contents)
+        try:
+            return Log(name, contents)
+        except Exception as error:  # damage that left records, but no sense in them
+            if contents.complete:
+                raise
+            raise OutputError(f"{name} is damaged: what it still holds cannot be read ({error})") from error
 
     @property
     def failure(self) -> str | None:
@@ -157,14 +167,15 @@ class Log:
 # ---------------------------------------------------------------------- from bytes to arrays
 
 
-def _channels(contents: Contents) -> dict[str, _Stored]:
+def _channels(contents: Contents, begin: int) -> dict[str, _Stored]:
+    """Args: begin: ns of the file's clock at which that of the run is zero."""
     found: dict[str, _Stored] = {}
     for key in sorted(contents.channels):
         channel = contents.channels[key]
         fields = json.loads(channel.metadata.get(FIELDS, "{}"))
         if not fields or not contents.times.get(key):
             continue
-        time = np.array(contents.times[key], dtype=np.float64) * 1e-9
+        time: Array = (np.array(contents.times[key], dtype=np.int64) - begin).astype(np.float64) * 1e-9
         messages = np.frombuffer(b"".join(contents.data[key]), dtype=np.uint8).reshape(time.size, -1)
         for name, about in fields.items():
             values = _values(messages, about["offsets"]).reshape(time.size, *about["shape"])

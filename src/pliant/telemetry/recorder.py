@@ -17,7 +17,7 @@ import numpy as np
 from pliant.errors import ConfigError, OutputError, ShapeError
 from pliant.signals import Tick
 from pliant.telemetry.info import RunInfo
-from pliant.telemetry.log import Log
+from pliant.telemetry.log import CLOCK, Log
 from pliant.telemetry.mcap.topics import PREFIX, units_of
 from pliant.telemetry.mcap.writer import McapFile
 from pliant.telemetry.plan import Block, Plan
@@ -72,6 +72,8 @@ class Recorder:
         self._file = McapFile(self._stream)
         self._file.add_metadata("pliant", metadata)
         self._phase = ""
+        self._zero: int | None = None
+        """ns of the file's clock at which that of the run is zero; None: nothing is written yet"""
         self._error: BaseException | None = None
         self._closed = False
         self._queue: queue.Queue[Block | None] = queue.Queue(maxsize=_WAITING)
@@ -212,6 +214,11 @@ class Recorder:
 
     def _write(self, block: Block) -> None:
         times = np.rint(block.times[: block.count] * 1e9).astype(np.int64)
+        if self._zero is None:
+            self._zero = _whole_seconds_below(int(times.min()))
+            if self._zero:
+                self._file.add_metadata(CLOCK, {"zero_ns": str(self._zero)})
+        times = np.maximum(times + self._zero, 0)
         if block.phase != self._phase:
             self._phase = block.phase
             self._file.add_text(f"{PREFIX}/reference/phase", int(times[0]), block.phase)
@@ -230,6 +237,11 @@ class Recorder:
         failure = OutputError(f"{where} cannot be written: {why}")
         failure.__cause__ = error
         return failure
+
+
+def _whole_seconds_below(first: int) -> int:
+    """ns by which a clock that begins at `first` ns, below zero, is moved up; one second more than it needs."""
+    return 0 if first >= 0 else (-first // 1_000_000_000 + 2) * 1_000_000_000
 
 
 def _open(target: Path | str | BinaryIO | None) -> tuple[BinaryIO, bool]:

@@ -62,7 +62,7 @@ class McapFile:
     def __init__(self, stream: BinaryIO) -> None:
         """Starts a file. Args: stream: open for writing, at its start; it stays open at `finish`."""
         self._stream = stream
-        self._at = 0
+        self._at, self._crc = 0, 0
         self._schemas: dict[str, Schema] = {}
         self._channels: dict[tuple[str, str, bytes], Channel] = {}
         self._counts: dict[int, int] = {}
@@ -110,7 +110,7 @@ class McapFile:
 
     def finish(self) -> None:
         """Writes the index. Without it the file is readable up to its last block."""
-        self._write(_bytes(DataEnd(0)))
+        self._write(_bytes(DataEnd(self._crc)))  # a byte that changes later shows
         start = self._at
         summary, offsets = b"", b""
         for opcode, records in (
@@ -135,6 +135,7 @@ class McapFile:
     def _write(self, data: bytes) -> None:
         self._stream.write(data)
         self._at += len(data)
+        self._crc = zlib.crc32(data, self._crc)
 
     def _channel(
         self, topic: str, datatype: str, data: bytes, metadata: Callable[[], dict[str, str]], chunk: _Chunk
