@@ -2,8 +2,8 @@
 
 A fractal impedance is a spring with two forces. While the error grows (divergence) the force follows a profile that
 starts with the stiffness K_0 and bends towards F_max, which it never exceeds. On the way back (convergence) the
-force first pulls, then brakes, so that the mass arrives at rest. No velocity feedback is involved, and the error port
-stays passive.
+force first pulls, then brakes, so that the mass arrives at rest. No velocity feedback is involved; an
+account of the energy keeps the sampled force from giving more than it took.
 
 Run it:  python examples/02_one_fractal_impedance.py
 

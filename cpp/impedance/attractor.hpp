@@ -1,7 +1,7 @@
 // The fractal attractor of one axis: when it diverges, when it converges, which force it gives, and what it books.
 #pragma once
 
-#include "profile.hpp"
+#include "account.hpp"
 
 namespace pliant::impedance {
 
@@ -31,6 +31,7 @@ struct AxisState {
   double energy_start;
   double gap;    // force that was missing when convergence was left, N or N m
   double blend;  // share of it that is still missing, 1..0
+  AccountState account;
 };
 
 // Rate and noise from differences of the error. The third difference of a smooth motion is negligible, that of white noise
@@ -98,15 +99,14 @@ inline double law_force(const AttractorConfig& c, Shape shape, const Axis& p, co
 
 // The force of the law, less what is still missing of the step that it makes where convergence ends. `left` says whether
 // convergence ended at this tick; s.force is still the force of the last one.
-inline void update_force(const AttractorConfig& c, Shape shape, const Axis& p, AxisState& s, double error, bool left) {
+inline double blended_force(const AttractorConfig& c, Shape shape, const Axis& p, AxisState& s, double error, bool left) {
   const double law = law_force(c, shape, p, s, error);
   if (left) {
     s.gap = law - s.force;
     s.blend = 1.0;
   }
   s.blend = std::max(s.blend - c.blend_step, 0.0);
-  s.force = law;
-  if (s.blend > 0.0) s.force = std::min(std::max(law - s.blend * s.gap, -p.force_max), p.force_max);
+  return s.blend > 0.0 ? clamped(law - s.blend * s.gap, p.force_max) : law;
 }
 
 // Energy that can still leave the error port: E while diverging, E(x_m) minus what the convergence gave back so far.
@@ -127,7 +127,7 @@ inline double storage(const AttractorConfig& c, Shape shape, const Axis& p, cons
 inline void start(AxisState& s, Shape shape, const Axis& p, double error, double rate_floor, const AttractorConfig& c) {
   s = AxisState{};
   s.turning = s.error = s.error_2 = s.error_3 = error;
-  s.energy_start = energy(shape, p, error);
+  s.energy_start = s.account.stored = energy(shape, p, error);
   const double deviation = rate_floor / (3.0 * c.noise_to_rate);
   s.noise = deviation * deviation;
 }

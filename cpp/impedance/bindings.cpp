@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "drive.hpp"
 #include "stack.hpp"
 
 namespace nb = nanobind;
@@ -14,6 +15,8 @@ namespace {
 
 using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using ConstVector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Table = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using ConstTable = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using ConstMatrix = nb::ndarray<const double, nb::ndim<2>, nb::device::cpu>;
 
 [[noreturn]] void reject(const std::string& message) { throw nb::value_error(message.c_str()); }
@@ -109,11 +112,24 @@ Shape shape_named(const std::string& name) {
   reject("unknown profile " + name);
 }
 
+AxisConfig axis_config(const std::string& law, double period, double rate_gain, double noise_gain, double hold_limit,
+                       double blend_step, nb::object account) {
+  const double noise_to_rate = rate_gain / period * std::sqrt(2.0 / (2.0 - rate_gain));
+  AxisConfig config{{law_named(law), period, rate_gain, noise_gain, noise_to_rate, hold_limit, blend_step}, {}};
+  config.account.active = !account.is_none();
+  config.account.period = period;
+  if (!config.account.active) return config;
+  const auto values = nb::cast<ConstVector>(account);
+  expect(values.shape(0), 11, "account");
+  const double* v = values.data();
+  config.account = {true, period, v[0], v[1], v[2], v[3], v[4], v[5], {v[6], v[7]}, v[8], v[9], v[10]};
+  return config;
+}
+
 // tasks: one (axes, profile name, m/s floor, rad/s floor, moves) each.
 void build(Stack* self, const std::string& law, double period, double rate_gain, double noise_gain, double hold_limit,
-           double blend_step, ConstVector torque_limit, nb::list tasks) {
-  const double noise_to_rate = rate_gain / period * std::sqrt(2.0 / (2.0 - rate_gain));
-  const AttractorConfig config{law_named(law), period, rate_gain, noise_gain, noise_to_rate, hold_limit, blend_step};
+           double blend_step, nb::object account, ConstVector torque_limit, nb::list tasks) {
+  const AxisConfig config = axis_config(law, period, rate_gain, noise_gain, hold_limit, blend_step, account);
   std::vector<TaskConfig> list;
   for (nb::handle item : tasks) {
     const auto t = nb::cast<nb::tuple>(item);
@@ -128,7 +144,26 @@ void build(Stack* self, const std::string& law, double period, double rate_gain,
     list.push_back(std::move(task));
   }
   const double* limit = torque_limit.data();
-  new (self) Stack(config, std::vector<double>(limit, limit + torque_limit.shape(0)), std::move(list));
+  new (self) Stack(config, std::vector<double>(limit, limit + torque_limit.shape(0)), list);
+}
+
+// errors, forces, balances (steps, trials).
+void drive_axis(const std::string& law, double period, double rate_gain, double noise_gain, double hold_limit,
+                double blend_step, nb::object account, const std::string& shape, ConstVector tuning, double rate_floor,
+                bool rotates, ConstTable errors, Table forces, Table balances) {
+  const AxisConfig config = axis_config(law, period, rate_gain, noise_gain, hold_limit, blend_step, account);
+  expect(tuning.shape(0), 4, "a tuning");
+  if (forces.shape(0) != errors.shape(0) || forces.shape(1) != errors.shape(1) ||
+      balances.shape(0) != errors.shape(0) || balances.shape(1) != errors.shape(1)) {
+    reject("errors, forces and balances must have one shape");
+  }
+  const double* t = tuning.data();
+  const Shape form = shape_named(shape);
+  const Axis axis = make_axis(form, t[0], t[1], t[2], t[3]);
+  const auto steps = static_cast<int>(errors.shape(0)), trials = static_cast<int>(errors.shape(1));
+  for (int i = 0; i < trials; ++i) {
+    drive(config, form, axis, rate_floor, rotates, errors.data() + i, forces.data() + i, balances.data() + i, steps, trials);
+  }
 }
 
 }  // namespace
@@ -137,9 +172,14 @@ NB_MODULE(_impedance, m) {
   m.doc() = "Compiled core of the stack of fractal impedance tasks; `pliant.controllers.stack` is its typed face.";
   nb::class_<Stack>(m, "Stack")
       .def("__init__", &build, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
-           nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("torque_limit"), nb::arg("tasks"))
+           nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(),
+           nb::arg("torque_limit"), nb::arg("tasks"))
       .def_prop_ro("state_size", &Stack::state_size)
       .def_prop_ro("output_size", &Stack::output_size)
+      .def_prop_ro("kept_back", &Stack::kept_back)
       .def("step", &step, nb::arg("memory"), nb::arg("out"), nb::arg("q"), nb::arg("J"), nb::arg("actual"),
            nb::arg("desired"), nb::arg("bias").none(), nb::arg("retune").none());
+  m.def("drive_axis", &drive_axis, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
+        nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(), nb::arg("shape"), nb::arg("tuning"),
+        nb::arg("rate_floor"), nb::arg("rotates"), nb::arg("errors"), nb::arg("forces"), nb::arg("balances"));
 }

@@ -17,6 +17,7 @@ class Stack:
         noise_gain: float,
         hold_limit: float,
         blend_step: float,
+        account: NDArray[float64] | None,
         torque_limit: NDArray[float64],
         tasks: list[tuple[int, str, float, float, list[bool]]],
     ) -> None:
@@ -28,6 +29,7 @@ class Stack:
             noise_gain: share of a new sample in the noise variance.
             hold_limit: s.
             blend_step: share of the force's step at the end of a convergence that one period takes away.
+            account: (11,) `AccountSettings.numbers`, or None: no passivity account, and no bound on moments.
             torque_limit: (n,) N·m, may be infinite.
             tasks: (axes, profile, rate floor in m/s, rate floor in rad/s, which joints move the frame) each.
         """
@@ -36,6 +38,9 @@ class Stack:
     def state_size(self) -> int: ...
     @property
     def output_size(self) -> int: ...
+    @property
+    def kept_back(self) -> int:
+        """Where in the memory the torque (n) stands that was asked for and not sent."""
     def step(
         self,
         memory: NDArray[float64],
@@ -63,3 +68,32 @@ class Stack:
             0, or what is not finite (then nothing was changed): 1 for q, 100 + i for frame i, 200 + i for its
             reference.
         """
+
+def drive_axis(
+    law: str,
+    period: float,
+    rate_gain: float,
+    noise_gain: float,
+    hold_limit: float,
+    blend_step: float,
+    account: NDArray[float64] | None,
+    shape: str,
+    tuning: NDArray[float64],
+    rate_floor: float,
+    rotates: bool,
+    errors: NDArray[float64],
+    forces: NDArray[float64],
+    balances: NDArray[float64],
+) -> None:
+    """Drives one axis, whose target rests, along many histories: for searches.
+
+    Args:
+        law, period, rate_gain, noise_gain, hold_limit, blend_step, account: as for `Stack`.
+        shape: name of a profile.
+        tuning: stiffness, force_max, range, linear_range.
+        rate_floor: m/s or rad/s.
+        rotates: whether it is a rotation.
+        errors: (steps, trials) m or rad.
+        forces: (steps, trials), filled: N or N·m, held until the next step.
+        balances: (steps, trials), filled: of the account, J.
+    """

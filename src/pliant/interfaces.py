@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from typing import Generic, Literal, Protocol, TypeVar
 
 from pliant.signals import Command, Estimate, Measurement, Reference, Tick, Truth
+from pliant.spatial import Array
 
 State = TypeVar("State")
 
@@ -53,6 +54,13 @@ class Controller(ABC, Generic[State]):
 
         The torque is finite and within the robot's limits; `Command.clamped` holds what the limits took away.
         """
+
+    def kept_back(self, state: State, torque: Array) -> State:
+        """Told by a layer outside that a part (n,) N·m of the last torque was not sent. Returns the next state.
+
+        Most controllers do not care; those that book their energy do.
+        """
+        return state
 
 
 class Plant(ABC, Generic[State]):

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from pliant import _impedance
 from pliant.controllers.attractor import Law, PhaseSettings
 from pliant.controllers.energy_ledger import channel_table
+from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
@@ -66,6 +67,7 @@ def run_mass(
     target: Any = lambda t: 0.0,
     noise: float = 0.0,
     settings: PhaseSettings | None = None,
+    account: bool = True,
 ) -> MassRun:
     """A mass pulled by one axis of the compiled core; the force is held over each period, the motion is exact."""
     settings = settings or PhaseSettings()
@@ -76,6 +78,7 @@ def run_mass(
         noise_gain=settings.noise_gain(period),
         hold_limit=settings.hold_limit,
         blend_step=settings.blend_step(period),
+        account=AccountSettings().numbers(period) if account and law is Law.CAPPED else None,
         torque_limit=np.array([np.inf]),
         tasks=[(3, profile.shape.value, settings.rate_floor, settings.rate_floor_angular, [True])],
     )
@@ -84,7 +87,8 @@ def run_mass(
     table = channel_table(1, [("axis", 3)])
     columns = [table[f"axis/{name}"].start for name in ("force", "phase", "rate_threshold", "rate")]
     memory, out = np.zeros(core.state_size), np.zeros(core.output_size)
-    origin, q, J = (np.zeros(3), None), np.zeros(1), np.zeros((6, 1), order="F")
+    J = np.zeros((6, 1), order="F")
+    J[0, 0] = 1.0
     steps = round(seconds / period)
     seen_noise = noise * np.random.default_rng(3).standard_normal(steps)
     push = load if callable(load) else lambda t: load
@@ -92,8 +96,9 @@ def run_mass(
     for k in range(steps):
         t = k * period
         error = target(t) - x
-        seen = np.array([error + seen_noise[k], 0.0, 0.0])
-        core.step(memory, out, q, J, origin, (seen, None), None, ((0, tuning),) if k == 0 else None)
+        q, aim = np.array([x - seen_noise[k]]), np.array([target(t), 0.0, 0.0])
+        seen = np.array([q[0], 0.0, 0.0])
+        core.step(memory, out, q, J, (seen, None), (aim, None), None, ((0, tuning),) if k == 0 else None)
         h, converging, threshold, rate = out[columns]
         rows.append((error, h, v, converging, threshold, rate))
         x, v = moved(x, v, h + push(t), mass, damping, period)

@@ -1,4 +1,4 @@
-"""The fractal attractor: bounded, continuous, passive under any switching, and it always comes home."""
+"""The fractal attractor: bounded, continuous, passive under any switching in continuous time, and it comes home."""
 
 from __future__ import annotations
 
@@ -182,10 +182,10 @@ def pushes(t: float) -> float:
     return float(strengths[int(t / 0.5)]) if t % 0.5 < 0.3 else 0.0
 
 
-def margin_under_pushes(profile: ForceProfile, blend_time: float, period: float) -> np.ndarray:
+def margin_under_pushes(profile: ForceProfile, blend_time: float, period: float, account: bool = True) -> np.ndarray:
     """∫h dx̃ − (E(x̃) − E(x̃_0)) at every tick, J."""
     settings = PhaseSettings(blend_time=blend_time)
-    run = run_mass(profile, start=0.01, load=pushes, seconds=4.0, period=period, settings=settings)
+    run = run_mass(profile, start=0.01, load=pushes, seconds=4.0, period=period, settings=settings, account=account)
     absorbed = np.concatenate([[0.0], np.cumsum(run.force[:-1] * np.diff(run.error))])
     energy = profile.energy(run.error[:, None])[:, 0]
     return absorbed - (energy - energy[0])
@@ -194,19 +194,16 @@ def margin_under_pushes(profile: ForceProfile, blend_time: float, period: float)
 @pytest.mark.parametrize("profile", [SATURATING, STIFFENING])
 @pytest.mark.parametrize("blend_time", [0.0, 0.008])
 def test_the_whole_attractor_is_passive_under_pushes(profile: ForceProfile, blend_time: float) -> None:
-    """Phase logic, law and blend together: ∫h dx̃ ≥ E(x̃) − E(x̃_0), but for what sampling leaks (it goes with T_s)."""
-    leaks = []
+    """Phase logic, law, blend and account together: ∫h dx̃ ≥ E(x̃) − E(x̃_0) but for less than 5 mJ."""
     for period in (1e-3, 2.5e-4):
         margin = margin_under_pushes(profile, blend_time, period)
-        leaks.append(-min(margin.min(), 0.0))
         assert margin[-1] > 0.1  # J: it damps what the pushes bring in
-    assert leaks[0] < 0.05
-    assert leaks[1] < max(0.6 * leaks[0], 1e-3)
+        assert margin.min() > -5e-3
 
 
-def test_a_blend_as_long_as_a_swing_creates_energy() -> None:
-    """Control arm: what takes 8 ms by default must stay much shorter than a swing."""
-    assert margin_under_pushes(STIFFENING, 0.05, 1e-3).min() < -0.1
+def test_a_blend_as_long_as_a_swing_creates_energy_unless_it_has_to_pay() -> None:
+    assert margin_under_pushes(STIFFENING, 0.05, 1e-3).min() > -0.01
+    assert margin_under_pushes(STIFFENING, 0.05, 1e-3, account=False).min() < -0.1  # control arm
 
 
 def test_where_convergence_ends_the_force_does_not_jump() -> None:
@@ -215,7 +212,8 @@ def test_where_convergence_ends_the_force_does_not_jump() -> None:
         settings = PhaseSettings(blend_time=blend_time)
         runs[blend_time] = run_mass(SATURATING, start=0.05, damping=40.0, load=pushes, seconds=4.0, settings=settings)
     steps = {blend_time: np.abs(np.diff(run.force)).max() for blend_time, run in runs.items()}
-    assert steps[0.008] < 2.0 * 100.0 / 8 + 2.5  # N: an eighth of the way from −F_max to F_max, and K_0 v T_s
+    # N: an eighth of the way from −F_max to F_max, K_0 v T_s, and what the account cannot pay for
+    assert steps[0.008] < 2.0 * 100.0 / 8 + 2.5 + 5.0
     assert steps[0.0] > 40.0  # control arm
 
 

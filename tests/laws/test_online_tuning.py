@@ -93,7 +93,7 @@ def test_the_ledger_balances_and_books_what_tuning_injects(lwr4: Robot) -> None:
     assert np.abs(left).max() < 1e-9
     assert np.abs(total["tuning"]).max() > 0.1
     margins = np.array([np.concatenate([row["ee/storage_margin"], row["elbow/storage_margin"]]) for row in log])
-    assert margins.min() > -0.05  # J, what sampling lets through
+    assert margins.min() > -0.15  # J, the debt of stiffnesses that rose by more than the accounts held
 
 
 def test_the_ledger_agrees_with_the_work_in_the_joints(lwr4: Robot) -> None:
@@ -106,8 +106,8 @@ def test_the_ledger_agrees_with_the_work_in_the_joints(lwr4: Robot) -> None:
         booked = np.array([row["energy/delivered"] - row["energy/clamped"] for row in log])[1:]
         assert np.abs(booked).max() > 0.5
         off.append(np.abs(booked - work).max())
-    assert off[1] < 0.6 * off[0]
-    assert off[0] < 0.5
+    assert off[1] < 0.75 * off[0]
+    assert off[0] < 0.2
 
 
 def test_a_margin_of_a_plain_spring_goes_below_zero(lwr4: Robot) -> None:

@@ -8,20 +8,23 @@ import pytest
 from pliant import _impedance
 from pliant.controllers.attractor import Law, PhaseSettings
 from pliant.controllers.energy_ledger import Diagnostics, channel_table
+from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.signals import ImpedanceTuning
-from pliant.spatial import Array, exp3
-from tests.twins.impedance_twin import TwinTask
+from pliant.spatial import Array, exp3, log3
+from tests.twins.impedance_twin import TwinTask, works
 
 PERIOD = 1e-3
 SETTINGS = PhaseSettings()
-JOINTS = 7
+JOINTS = 9
+MOVES = np.array([[True] * 6 + [False] * 3, [False] * 6 + [True] * 3])
+"""(tasks, n) which joints move which frame"""
 
 
 def core(law: Law, shapes: list[Shape], axes: list[int], limit: float = np.inf) -> _impedance.Stack:
     tasks = [
-        (k, shape.value, SETTINGS.rate_floor, SETTINGS.rate_floor_angular, [True] * JOINTS)
-        for k, shape in zip(axes, shapes, strict=True)
+        (k, shape.value, SETTINGS.rate_floor, SETTINGS.rate_floor_angular, MOVES[i].tolist())
+        for i, (k, shape) in enumerate(zip(axes, shapes, strict=True))
     ]
     gains = {"rate_gain": SETTINGS.rate_gain(PERIOD), "noise_gain": SETTINGS.noise_gain(PERIOD)}
     limits = np.full(JOINTS, limit)
@@ -30,6 +33,7 @@ def core(law: Law, shapes: list[Shape], axes: list[int], limit: float = np.inf) 
         period=PERIOD,
         hold_limit=SETTINGS.hold_limit,
         blend_step=SETTINGS.blend_step(PERIOD),
+        account=AccountSettings().numbers(PERIOD) if law is Law.CAPPED else None,
         torque_limit=limits,
         tasks=tasks,
         **gains,
@@ -57,21 +61,36 @@ def wander(rng: np.random.Generator, steps: int) -> Array:
     return path + rng.choice([0.0, 0.0, 1e-5, 1e-4]) * rng.standard_normal((steps, 6))
 
 
+def joints_of(poses: list[tuple[Array, Array]]) -> Array:
+    """(6, 9) three slides and three hinges move the frame a, three slides the frame b."""
+    J = np.zeros((6, JOINTS), order="F")
+    J[:3, :3] = J[3:, 3:6] = J[:3, 6:] = np.eye(3)
+    J[:3, 3:6] = np.cross(poses[0][0], np.eye(3)).T
+    return J
+
+
+def way_of(poses: list[tuple[Array, Array]], last: list[tuple[Array, Array]]) -> Array:
+    """(9,) how far its joints moved."""
+    turn = log3(poses[0][1] @ last[0][1].T)
+    return np.concatenate([poses[0][0] - last[0][0], turn, poses[1][0] - last[1][0]])
+
+
 @pytest.mark.parametrize("law", list(Law))
-@pytest.mark.parametrize("seed", range(4))
-def test_core_equals_its_twin(law: Law, seed: int) -> None:
+@pytest.mark.parametrize(("seed", "limit"), [(0, np.inf), (1, np.inf), (2, 20.0), (3, 5.0)])
+def test_core_equals_its_twin(law: Law, seed: int, limit: float) -> None:
     rng = np.random.default_rng(100 + seed)
     axes, shapes = [6, 3], [Shape(s) for s in rng.choice(list(Shape), 2)]
-    stack = core(law, shapes, axes)
+    stack = core(law, shapes, axes, limit)
     twins = [TwinTask(law, PERIOD, k, SETTINGS) for k in axes]
     table = channel_table(JOINTS, [("a", 6), ("b", 3)])
     memory, out = np.zeros(stack.state_size), np.full(stack.output_size, np.nan)
-    steps = 400
+    steps = 250
     got: dict[str, list[object]] = {}
     wanted: dict[str, list[object]] = {}
     actual, desired = [wander(rng, steps) for _ in axes], [wander(rng, steps) for _ in axes]
     tunings = [random_tuning(rng, k) for k in axes]
-    J = np.asfortranarray(rng.standard_normal((6, JOINTS)))
+    q, torques, kept_back = np.zeros(JOINTS), np.zeros((2, JOINTS)), np.zeros(JOINTS)
+    last: list[tuple[Array, Array]] = []
     for step in range(steps):
         changed = [i for i in range(2) if step == 0 or rng.random() < 0.02]
         for i in changed:
@@ -81,26 +100,33 @@ def test_core_equals_its_twin(law: Law, seed: int) -> None:
         poses = [(actual[i][step, :3], exp3(actual[i][step, 3:])) for i in range(2)]
         targets = [(desired[i][step, :3], exp3(desired[i][step, 3:])) for i in range(2)]
         retune = tuple((i, packed(forms[i])) for i in changed)
+        way = way_of(poses, last or poses)
+        q, J, last = q + way, joints_of(poses), poses
         out[:] = np.nan
-        code = stack.step(memory, out, np.zeros(JOINTS), J, sum(poses, ()), sum(targets, ()), None, retune or None)
+        code = stack.step(memory, out, q, J, sum(poses, ()), sum(targets, ()), None, retune or None)
         assert code == 0
         assert np.isfinite(out).all()
         channels = Diagnostics(table, out.copy())
-        torque = np.zeros(JOINTS)
-        for label, twin, pose, target, profile in zip("ab", twins, poses, targets, profiles, strict=True):
+        work = works(torques, kept_back, way)
+        for i, (label, twin) in enumerate(zip("ab", twins, strict=True)):
+            profile = profiles[i]
             assert profile is not None
-            expected = twin.step(pose, target, profile)
+            expected = twin.step(poses[i], targets[i], profile, work[i])
             for name, value in expected.items():
                 got.setdefault(f"{label}/{name}", []).append(channels[f"{label}/{name}"])
                 wanted.setdefault(f"{label}/{name}", []).append(value)
             wrench = np.asarray(expected["wrench"])
-            torque += J[:3].T @ wrench[:3] + J[3:].T @ (wrench[3:] + np.cross(pose[0], wrench[:3]))
+            moved = J[:3].T @ wrench[:3] + J[3:].T @ (wrench[3:] + np.cross(poses[i][0], wrench[:3]))
+            torques[i] = np.where(MOVES[i], moved, 0.0)
+        sent = np.clip(torques.sum(axis=0), -limit, limit)
+        kept_back = torques.sum(axis=0) - sent
         got.setdefault("torque", []).append(out[:JOINTS].copy())
-        wanted.setdefault("torque", []).append(torque)
+        wanted.setdefault("torque", []).append(sent)
     for name, values in wanted.items():
         scale = max(1.0, float(np.abs(values).max()))
         np.testing.assert_allclose(np.array(got[name]), np.array(values), rtol=0.0, atol=2e-9 * scale, err_msg=name)
     assert np.array(wanted["a/phase"]).any() == (law is not Law.SPRING)
+    assert (np.abs(wanted["a/account"]).max() > 1e-3) == (law is Law.CAPPED)
 
 
 def test_clamped_torque_and_its_energy() -> None:
@@ -111,7 +137,8 @@ def test_clamped_torque_and_its_energy() -> None:
     tuning = (0, np.array([1000.0] * 3 + [50.0] * 3 + [0.1] * 3 + [0.05] * 3))
     energy = 0.0
     for step in range(5):
-        q = np.array([0.01 * step, 0, 0, 0, 0, 0, 0.0])
+        q = np.zeros(JOINTS)
+        q[0] = 0.01 * step
         stack.step(
             memory, out, q, J, (q[:3], None), (np.array([0.06, 0, 0]), None), None, (tuning,) if step == 0 else None
         )
@@ -124,11 +151,11 @@ def test_clamped_torque_and_its_energy() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"q": np.zeros(6)}, "q must have 7 entries, got 6"),
-        ({"J": np.zeros((6, 7))}, "column-major"),
+        ({"q": np.zeros(6)}, "q must have 9 entries, got 6"),
+        ({"J": np.zeros((6, 9))}, "column-major"),
         ({"actual": (np.zeros(3),)}, "actual must have 2 entries, got 1"),
         ({"desired": (np.zeros(4), None)}, "a position must have 3 entries, got 4"),
-        ({"bias": np.zeros(3)}, "bias must have 7 entries, got 3"),
+        ({"bias": np.zeros(3)}, "bias must have 9 entries, got 3"),
         ({"retune": ((0, np.zeros(3)),)}, "a tuning must have 12 entries, got 3"),
         ({"retune": ((1, np.zeros(12)),)}, "there is no task 1"),
         ({"memory": np.zeros(3)}, "memory must have"),
@@ -140,8 +167,8 @@ def test_wrong_sizes_are_refused(change: dict[str, object], message: str) -> Non
     arguments: dict[str, object] = {
         "memory": np.zeros(stack.state_size),
         "out": np.zeros(stack.output_size),
-        "q": np.zeros(7),
-        "J": np.zeros((6, 7), order="F"),
+        "q": np.zeros(9),
+        "J": np.zeros((6, 9), order="F"),
         "actual": (np.zeros(3), None),
         "desired": (np.zeros(3), None),
         "bias": None,
@@ -155,8 +182,8 @@ def test_wrong_sizes_are_refused(change: dict[str, object], message: str) -> Non
 def test_what_is_not_finite_is_named_and_changes_nothing(place: str, code: int) -> None:
     stack = core(Law.CAPPED, [Shape.TANH], [3])
     memory, out = np.zeros(stack.state_size), np.full(stack.output_size, 7.0)
-    q, pose, target = np.zeros(7), np.zeros(3), np.zeros(3)
+    q, pose, target = np.zeros(9), np.zeros(3), np.zeros(3)
     {"q": q, "actual": pose, "desired": target}[place][1] = np.nan
-    assert stack.step(memory, out, q, np.zeros((6, 7), order="F"), (pose, None), (target, None), None, None) == code
+    assert stack.step(memory, out, q, np.zeros((6, 9), order="F"), (pose, None), (target, None), None, None) == code
     assert not memory.any()
     assert (out == 7.0).all()

@@ -13,6 +13,7 @@ from enum import StrEnum
 import numpy as np
 import numpy.typing as npt
 
+from pliant.controllers.passivity_account import ACCOUNT, Account, AccountSettings, AccountState, Motion
 from pliant.controllers.profiles import ForceProfile
 from pliant.errors import ConfigError
 from pliant.spatial import Array
@@ -22,7 +23,8 @@ class Law(StrEnum):
     """Which force an axis gives on the way back to its target."""
 
     CAPPED = "capped"
-    """passive for any switching between divergence and convergence, bounded by F_max"""
+    """bounded by F_max; passive for any switching between divergence and convergence in continuous time, kept so when
+    sampled by an account of its energy"""
     HAPFIC = "hapfic"
     """[HapFIC] eq. 1 as printed; creates energy when the convergence is interrupted"""
     STACK_PRINTED = "stack-printed"
@@ -103,6 +105,8 @@ class AttractorState:
     """force that was missing when the convergence ended, N or N·m"""
     blend: Array
     """share of the gap that is still missing, 1…0"""
+    account: AccountState | None = None
+    """of the capped law; None before the first step"""
 
 
 @dataclass(frozen=True)
@@ -115,6 +119,9 @@ class Attractor:
     """(k,) smallest rate that tells a direction, m/s or rad/s"""
     law: Law = Law.CAPPED
     settings: PhaseSettings = PhaseSettings()
+    account: AccountSettings = ACCOUNT
+    rotates: Flags | None = None
+    """(k,) which axes are rotations; None: none"""
 
     def init(self, error: Array) -> AttractorState:
         """Starts diverging, with x_m = x̃. Args: error (k,) m or rad."""
@@ -124,11 +131,29 @@ class Attractor:
             error, np.zeros(error.shape, dtype=np.bool_), zero, (error, error, error), zero, noise, zero, zero, zero
         )
 
-    def step(self, profile: ForceProfile, error: Array, state: AttractorState) -> tuple[Array, AttractorState]:
-        """The force (k,) in N or N·m for the error of this tick (k,), and the next state."""
+    def step(
+        self, profile: ForceProfile, error: Array, state: AttractorState, motion: Motion | None = None
+    ) -> tuple[Array, AttractorState]:
+        """The force (k,) in N or N·m for the error of this tick (k,), and the next state.
+
+        Args:
+            profile: in force from now on; another one than in the last tick is paid for by the account.
+            error: x̃ (k,), m or rad.
+            state: of the last tick.
+            motion: what moved the error; None: the robot alone, against the force of the last tick.
+        """
+        motion = motion or Motion(error, state.force * (error - state.errors[0]))
+        booked = self._booked(profile, error, state, motion) if self.law is Law.CAPPED else None
+        wanted, state = self.wish(profile, error, state)
+        if booked is None:
+            return wanted, state
+        force, account = self._account(error).allow(booked, error, wanted)
+        return force, replace(state, force=force, account=account)
+
+    def wish(self, profile: ForceProfile, error: Array, state: AttractorState) -> tuple[Array, AttractorState]:
+        """What phases, law and blend want, before the account has its say. Arguments and results as of `step`."""
         converged = state.converging
-        state = self._sense(error, state)
-        state = self._switch(error, state)
+        state = self._switch(error, self._sense(error, state))
         law = self.law_force(profile, error, state)
         left = converged & ~state.converging
         gap = np.where(left, law - state.force, state.gap)
@@ -146,6 +171,17 @@ class Attractor:
         turning = np.where(state.converging, state.turning, 1.0)  # 1.0: any number that is not zero
         back = converging_force(self.law, profile, error, turning)
         return np.where(state.converging, back, profile.force(error))
+
+    def _account(self, error: Array) -> Account:
+        rotates = np.zeros(error.shape, dtype=np.bool_) if self.rotates is None else self.rotates
+        speed = np.where(rotates, self.account.speed_angular, self.account.speed)
+        return Account(self.period, speed, self.account)
+
+    def _booked(self, profile: ForceProfile, error: Array, state: AttractorState, motion: Motion) -> AccountState:
+        account, last = self._account(error), state.errors[0]
+        booked = state.account or account.init(profile, last)
+        booked = account.book(booked, last, state.force, error, motion)
+        return booked if profile is booked.profile else account.restate(booked, profile, error)
 
     def _sense(self, error: Array, state: AttractorState) -> AttractorState:
         last, last_2, last_3 = state.errors

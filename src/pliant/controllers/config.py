@@ -55,7 +55,7 @@ class RotationConfig(ControllerConfig):
     )
     force_max: PerAxis = Field(
         default=12.0,
-        description="F_max: the moment never exceeds it, however large the angle",
+        description="F_max: bound of the moment about each axis, at any angle",
         json_schema_extra={"unit": "N·m", "minimum": 0.0, "maximum": 150.0},
     )
     range: PerAxis = Field(

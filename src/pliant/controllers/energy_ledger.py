@@ -8,6 +8,7 @@ Every tick books, for each axis, the work h·Δx̃ of the force that was held du
     stored     in the springs               Σ E(x̃)
     dissipated by the attractors            Σ (∫h dx̃ + tuning − (E(x̃) − E(x̃_0)))
     clamped    kept back by torque limits   Σ (wanted − sent)·Δq
+    spendable  by the accounts, next period Σ of what each axis may spend; no energy of the balance below
 
 so that supplied + tuning = delivered + dissipated + (stored − stored at the start) at every tick. What an axis
 dissipates is its storage margin: a passive law keeps it from falling below zero, but for the work that sampling lets
@@ -21,7 +22,7 @@ from dataclasses import dataclass
 
 from pliant.spatial import Array
 
-TOTALS = ("stored", "supplied", "delivered", "dissipated", "tuning", "clamped")
+TOTALS = ("stored", "supplied", "delivered", "dissipated", "tuning", "clamped", "spendable")
 """channels `energy/…` of the whole stack, J"""
 AXIS_ROWS = (
     ("force", "N, N·m"),  # h, the force conjugate to the error
@@ -31,10 +32,13 @@ AXIS_ROWS = (
     ("phase", "1"),  # 0 diverging, 1 converging
     ("turning_point", "m, rad"),  # x_m
     ("storage_margin", "J"),  # ∫h dx̃ + tuning − (E(x̃) − E(x̃_0))
+    ("account", "J"),  # balance of the passivity account; 0 for laws without one
 )
 """channels `LABEL/…` with one entry per axis: name, unit"""
 TASK_SUMS = ("energy_stored", "energy_supplied", "energy_dissipated", "energy_tuning")
 """channels `LABEL/…` of one task, J"""
+MOMENT_SCALE = "moment_scale"
+"""channel `LABEL/…`: factor on h of the rotations that keeps each moment within its F_max"""
 
 
 @dataclass(frozen=True)
@@ -47,18 +51,21 @@ class Channel:
     unit: str
 
 
-def channel_table(joints: int, tasks: Sequence[tuple[str, int]]) -> dict[str, Channel]:
+def channel_table(joints: int, tasks: Sequence[tuple[str, int]], account: bool = True) -> dict[str, Channel]:
     """Name → place of every channel of a stack.
 
     Args:
         joints: number of joints; torque and clamped torque come first.
         tasks: (label, axes) of each task.
+        account: whether the axes have a passivity account; without one nothing is spendable, and no channel says so.
     """
     table: dict[str, Channel] = {}
     place = 2 * joints
     for name in TOTALS:
         table[f"energy/{name}"] = Channel(place, 0, "J")
         place += 1
+    if not account:
+        del table["energy/spendable"]
     for label, axes in tasks:
         table[f"{label}/wrench"] = Channel(place, 6, "N, N·m")
         place += 6
@@ -68,6 +75,8 @@ def channel_table(joints: int, tasks: Sequence[tuple[str, int]]) -> dict[str, Ch
         for name in TASK_SUMS:
             table[f"{label}/{name}"] = Channel(place, 0, "J")
             place += 1
+        table[f"{label}/{MOMENT_SCALE}"] = Channel(place, 0, "1")
+        place += 1
     return table
 
 

@@ -11,7 +11,7 @@ from pliant.signals import Command, Estimate, Reference
 
 
 class FractalImpedance(Controller[StackState]):
-    """Pulls one frame towards its reference with bounded, passive force ([HapFIC] sec. II-C; [Stack] sec. II-B).
+    """Pulls one frame towards its reference with bounded force ([HapFIC] sec. II-C; [Stack] sec. II-B).
 
     The same as a stack of one task. Joints that the task does not hold stay free: without friction or damping in them,
     add a second task, or use it on a robot with as many joints as axes.

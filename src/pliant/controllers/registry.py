@@ -51,7 +51,9 @@ def _stack(name: str, law: Law, summary: str) -> ControllerEntry[StackConfig]:
 CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
     entry.name: entry
     for entry in (
-        _stack("stack", Law.CAPPED, "stack of fractal impedances with the capped, passive convergence law"),
+        _stack(
+            "stack", Law.CAPPED, "stack of fractal impedances with the capped convergence law and a passivity account"
+        ),
         _stack("stack-paper", Law.STACK_PRINTED, "the same with the law of Tiseo et al. 2020, Algorithm 1, as printed"),
         _stack("stack-corrected", Law.STACK_CORRECTED, "the same with that law's sign turned round"),
         _stack("stack-hapfic", Law.HAPFIC, "the same with the law of Tiseo et al. 2021, eq. 1, as printed"),

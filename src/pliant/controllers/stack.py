@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ import pinocchio as pin
 from pliant import _impedance
 from pliant.controllers.attractor import Law, PhaseSettings
 from pliant.controllers.energy_ledger import Channel, Diagnostics, channel_table
+from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.profiles import linear_range
 from pliant.controllers.task import FrameTask
 from pliant.errors import ConfigError, ShapeError, SignalError, options
@@ -48,7 +49,9 @@ class Stack(Controller[StackState]):
     """τ = Σ J_iᵀ h_i, each h_i a fractal impedance at its own frame, then clamped to the torque limits ([Stack] eq. 5).
 
     It needs no inverse, no projection and, without gravity compensation, no inertia. Orientation errors are
-    e = log(R_d Rᵀ); the moment is m = J_l⁻¹(e) h, so that m·ω = −h·ė and the port stays passive with unequal gains.
+    e = log(R_d Rᵀ); the moment is m = J_l⁻¹(e) h, so that m·ω = −h·ė with unequal gains, too.
+    Where a moment would exceed its F_max, the three shrink together. Each axis of the capped law pays for what
+    sampling, clamps and changes of its tuning let out, see `passivity_account`.
 
     Forces come from position errors alone: `TaskReference.velocity`, `.acceleration` and `.wrench` are not used. A task
     whose reference has no rotation leaves the orientation free for as long.
@@ -103,6 +106,7 @@ class Stack(Controller[StackState]):
             noise_gain=self.phases.noise_gain(period),
             hold_limit=self.phases.hold_limit,
             blend_step=self.phases.blend_step(period),
+            account=AccountSettings().numbers(period) if self.law is Law.CAPPED else None,
             torque_limit=robot.torque_limit,
             tasks=[
                 (
@@ -115,7 +119,8 @@ class Stack(Controller[StackState]):
                 for task, frame in zip(self.tasks, self._frames, strict=True)
             ],
         )
-        self._table = channel_table(robot.n, [(task.label, task.axes) for task in self.tasks])
+        labels_and_axes = [(task.label, task.axes) for task in self.tasks]
+        self._table = channel_table(robot.n, labels_and_axes, account=self.law is Law.CAPPED)
 
     @property
     def channels(self) -> Mapping[str, Channel]:
@@ -163,6 +168,12 @@ class Stack(Controller[StackState]):
             return gravity
         damping = -self.joint_damping * self.robot.vector(estimate.v, "v")
         return damping if gravity is None else gravity + damping
+
+    def kept_back(self, state: StackState, torque: Array) -> StackState:
+        """Books that part of the last torque, (n,) N·m, was not sent: the accounts of the tasks bear what it costs."""
+        memory, start = state.memory.copy(), self._core.kept_back
+        memory[start : start + self.robot.n] += torque
+        return replace(state, memory=memory)
 
     def _read(
         self, reference: Reference, last: tuple[ImpedanceTuning | None, ...]

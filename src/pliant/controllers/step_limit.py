@@ -15,6 +15,13 @@ from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
 
+DEFAULT_SHARE = 0.14
+"""of a joint's torque limit per period: the change that no controller need exceed in use"""
+SPENDABLE = "energy/spendable"
+"""channel of a controller that books its energy: J that a layer outside may spend in the next period"""
+CHANNELS = {"energy/step_limit": "J", "step_limit/exceeded": "1"}
+"""name → unit of what is added to the inner controller's channels"""
+
 
 @dataclass(frozen=True, slots=True)
 class StepLimitState:
@@ -23,6 +30,8 @@ class StepLimitState:
     inner: Any
     q: Array
     """(n,) joint positions of the last tick, rad"""
+    sent: Array
+    """(n,) torque of the last tick, N·m"""
     held_back: Array
     """(n,) torque that the bound took away in the last tick, N·m"""
     energy: float
@@ -32,9 +41,15 @@ class StepLimitState:
 class StepLimit(Controller[StepLimitState]):
     """Bounds the change of each joint's torque from one period to the next.
 
-    Gears, joint-torque loops and most robots' own safety want torques that do not jump; an attractor that switches its
-    phase makes them jump. What the bound takes away is part of `Command.clamped`; its work is booked in
-    `energy/step_limit`.
+    Gears, joint-torque loops and most robots' own safety want torques that do not jump; an attractor that switches
+    its phase makes them jump, and so does a stiffness that changes under a standing error. What the bound takes away is
+    part of `Command.clamped`; its work is booked in `energy/step_limit`, and the controller inside is told
+    (`Controller.kept_back`).
+
+    A torque that lags behind can let energy out that the controller did not mean to give. Where the controller says
+    what may be spent (channel `energy/spendable`), and the lag would cost more over a step like the last one, the
+    torque goes further than the bound: passivity comes first. `step_limit/exceeded` says by how much, as a share of
+    the bound (0: held).
 
     Args:
         inner: the controller whose torques are bounded.
@@ -46,7 +61,7 @@ class StepLimit(Controller[StepLimitState]):
         ConfigError: the share is not above zero.
     """
 
-    def __init__(self, inner: Controller[Any], robot: Robot, share: float) -> None:
+    def __init__(self, inner: Controller[Any], robot: Robot, share: float = DEFAULT_SHARE) -> None:
         if not (math.isfinite(share) and share > 0.0):
             raise ConfigError(f"the torque step must be a share above zero of the torque limit, got {share}")
         self.inner = inner
@@ -54,33 +69,53 @@ class StepLimit(Controller[StepLimitState]):
         self._limit: Array = robot.torque_limit
 
     def init(self, estimate: Estimate) -> StepLimitState:
-        return StepLimitState(self.inner.init(estimate), estimate.q, np.zeros_like(estimate.q), 0.0)
+        """The first torque may differ by a step from what the robot says it holds; nothing, if it does not say."""
+        zero = np.zeros_like(estimate.q)
+        sent = np.clip(np.nan_to_num(estimate.torque_sent, nan=0.0), -self._limit, self._limit)
+        return StepLimitState(self.inner.init(estimate), estimate.q, sent, zero, 0.0)
 
     def step(self, estimate: Estimate, reference: Reference, state: StepLimitState) -> tuple[Command, StepLimitState]:
         command, inner = self.inner.step(estimate, reference, state.inner)
-        sent = np.clip(np.nan_to_num(estimate.torque_sent, nan=0.0), -self._limit, self._limit)
-        torque = np.minimum(np.maximum(command.torque, sent - self.step_max), sent + self.step_max)
-        held_back = command.torque - torque
-        energy = state.energy + float(state.held_back @ (estimate.q - state.q))
-        diagnostics = _With(command.diagnostics, energy)
-        bounded = Command(command.time, torque, command.clamped + held_back, diagnostics)
-        return bounded, StepLimitState(inner, estimate.q, held_back, energy)
+        way = estimate.q - state.q
+        energy = state.energy + float(state.held_back @ way)
+        wanted, sent = command.torque, state.sent
+        torque = np.minimum(np.maximum(wanted, sent - self.step_max), sent + self.step_max)
+        held_back, exceeded, clamped = wanted - torque, 0.0, command.clamped
+        if held_back.any():
+            share = _affordable(held_back, way, command.diagnostics)
+            if share < 1.0:
+                held_back = share * held_back
+                torque = wanted - held_back
+                exceeded = max(float((np.abs(torque - sent) / self.step_max).max()) - 1.0, 0.0)
+            inner, clamped = self.inner.kept_back(inner, held_back), clamped + held_back
+        bounded = Command(command.time, torque, clamped, _With(command.diagnostics, energy, exceeded))
+        return bounded, StepLimitState(inner, estimate.q, torque, held_back, energy)
+
+
+def _affordable(held_back: Array, way: Array, diagnostics: Mapping[str, Any]) -> float:
+    """Share of the torque that may be held back (n,), for a step (n,) rad like the last one."""
+    if SPENDABLE not in diagnostics:
+        return 1.0
+    cost = -float(held_back @ way)
+    spendable = float(diagnostics[SPENDABLE])
+    return spendable / cost if cost > spendable else 1.0
 
 
 class _With(Mapping[str, "float | Array"]):
-    """The inner controller's channels and one more, without copying them."""
+    """The inner controller's channels and two more, without copying them."""
 
-    __slots__ = ("_energy", "_inner")
+    __slots__ = ("_added", "_inner")
 
-    def __init__(self, inner: Mapping[str, float | Array], energy: float) -> None:
-        self._inner, self._energy = inner, energy
+    def __init__(self, inner: Mapping[str, float | Array], energy: float, exceeded: float) -> None:
+        self._inner = inner
+        self._added = {"energy/step_limit": energy, "step_limit/exceeded": exceeded}
 
     def __getitem__(self, name: str) -> float | Array:
-        return self._energy if name == "energy/step_limit" else self._inner[name]
+        return self._added[name] if name in self._added else self._inner[name]
 
     def __iter__(self) -> Iterator[str]:
         yield from self._inner
-        yield "energy/step_limit"
+        yield from self._added
 
     def __len__(self) -> int:
-        return len(self._inner) + 1
+        return len(self._inner) + len(self._added)

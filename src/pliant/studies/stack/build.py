@@ -6,7 +6,7 @@ import numpy as np
 
 from pliant.controllers.config import StackConfig as StackParameters
 from pliant.controllers.profiles import linear_range
-from pliant.controllers.step_limit import StepLimit
+from pliant.controllers.step_limit import CHANNELS, StepLimit
 from pliant.errors import ConfigError
 from pliant.estimation import DirectEstimator
 from pliant.experiments.base import Experiment
@@ -57,6 +57,7 @@ def build(config: StackConfig) -> Experiment:
     channels = tuple(Channel(name, about.unit) for name, about in getattr(controller, "channels", {}).items())
     if config.torque_step is not None:
         controller = StepLimit(controller, robot, config.torque_step)
+        channels += tuple(Channel(name, unit) for name, unit in CHANNELS.items())
     return Experiment(
         robot=robot,
         plant=plant,

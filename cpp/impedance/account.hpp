@@ -1,0 +1,126 @@
+// The passivity account of one axis: what its sampled force took in beyond what the profile stores, and how much of that
+// the next force may spend.
+//
+// Over a period the held force h takes in h d, with d the motion of the error, and the profile stores E(error). The
+// difference is booked at the next tick, so that sampling, blending, clamps, step limits and changes of the tuning are
+// paid from what was dissipated before. Where the account holds nothing, the next force may not let out more than the
+// profile gives back over the step that is expected. A passivity observer and controller (Hannaford and Ryu 2002).
+#pragma once
+
+#include "profile.hpp"
+
+namespace pliant::impedance {
+
+struct AccountConfig {
+  bool active;
+  double period;       // s
+  double deposit;      // share that is kept of an income beyond the debt
+  double ceiling;      // J, largest balance
+  double savings;      // J, most of what is beyond it that is put aside
+  double spend;        // share of the balance beyond the reserve that one step may spend
+  double damping;      // largest force that repays a debt, as a multiple of K_0 times the step
+  double tolerance;    // J, debt that does not weaken the axis
+  double speed[2];     // m/s, rad/s: the tolerance is at least K_0/2 (speed period)^2
+  double trickle;      // W that an overdrawn axis may always let out
+  double peak_keep;    // share of the largest recent step that is kept per period
+  double forgiveness;  // share of the debt beyond the tolerance that is written off per period
+};
+
+// State of one axis between two ticks; doubles only.
+struct AccountState {
+  double balance;    // J taken in beyond what is stored
+  double savings;    // J put aside for what comes from outside: changes of the tuning, torque that was not sent
+  double stored;     // J, E of the error
+  double step;       // by which the error moved in the last period, targets that jump left out
+  double step_last;  // in the one before
+  double target;     // by which the target moved the error in the last period
+  double peak;       // largest recent step
+};
+
+// What moved the error in the last period.
+struct Motion {
+  double from;   // the error before
+  double robot;  // after the robot moved, with the target where it was
+  double error;  // after the target moved, too
+  double force;  // h that was asked for in the period
+  double work;   // J that the force that was really sent took in from the robot, h times its motion or not
+};
+
+inline double smaller_of_a_kind(double a, double b) {
+  if (a * b <= 0.0) return 0.0;
+  return std::fabs(a) < std::fabs(b) ? a : b;
+}
+
+// An income pays the debt first; of what is left a share is kept.
+inline void add(const AccountConfig& c, AccountState& a, double income) {
+  const double debt = std::min(std::max(-a.balance, 0.0), std::max(income, 0.0));
+  a.balance += income > 0.0 ? debt + c.deposit * (income - debt) : income;
+  const double beyond = std::max(a.balance - c.ceiling, 0.0);
+  a.balance -= beyond;
+  a.savings = std::min(a.savings + beyond, c.savings);
+}
+
+// An income from outside; a cost is taken from the savings first. The force of the axis itself never draws on them.
+inline void add_outside(const AccountConfig& c, AccountState& a, double income) {
+  const double paid = std::min(std::max(-income, 0.0), a.savings);
+  a.savings -= paid;
+  add(c, a, income + paid);
+}
+
+// Books the last period. A target that moves the error by r supplies h r, or what the profile stores more if that is more.
+inline void book(const AccountConfig& c, Shape shape, const Axis& p, AccountState& a, const Motion& m) {
+  const double stored = energy(shape, p, m.error);
+  const double target = m.error - m.robot;
+  const double between = target == 0.0 ? stored : energy(shape, p, m.robot);
+  const double own = m.force * (m.robot - m.from);
+  add_outside(c, a, m.work - own);
+  add(c, a, own - (between - a.stored) + std::max(m.force * target - (stored - between), 0.0));
+  a.step_last = a.step;
+  a.step = m.robot - m.from + smaller_of_a_kind(target, a.target);
+  a.target = target;
+  a.stored = stored;
+}
+
+// What the profile stores more after a change of the tuning is taken from the balance.
+inline void restate(const AccountConfig& c, AccountState& a, double stored) {
+  add_outside(c, a, a.stored - stored);
+  a.stored = stored;
+}
+
+// What is left to spend on a step d: the balance less what a reversal would cost.
+struct Budget {
+  double step;     // that is expected
+  double gain;     // J that the profile stores more after it
+  double balance;  // J, beyond the reserve; negative: below it
+};
+
+inline Budget budget(Shape shape, const Axis& p, const AccountState& a, double error) {
+  const double size = std::max(std::fabs(a.step), std::fabs(a.step_last));
+  const double d = std::min(std::max(2.0 * a.step - a.step_last, -size), size);
+  if (d == 0.0) return {0.0, 0.0, a.balance};
+  const double gain = energy(shape, p, error + d) - a.stored;
+  const double reversal = gain + energy(shape, p, error - d) - a.stored;
+  return {d, gain, a.balance - std::max(reversal, 0.0)};
+}
+
+inline double clamped(double x, double bound) { return std::min(std::max(x, -bound), bound); }
+
+// The force nearest to the wanted one that the account allows.
+inline double allowed_force(const AccountConfig& c, const Axis& p, AccountState& a, const Budget& b, double h, bool rotates) {
+  if (b.step != 0.0) {
+    const double repay = std::min(std::max(-b.balance, 0.0), c.damping * p.stiffness * b.step * b.step);
+    const double need = b.gain - c.spend * std::max(b.balance, 0.0) + repay;
+    if (h * b.step < need) h = need / b.step;
+    h = clamped(h, p.force_max);
+  }
+  const double way = c.speed[rotates] * c.period;
+  const double tolerance = std::max(c.tolerance, 0.5 * p.stiffness * way * way);
+  a.balance += c.forgiveness * std::max(-a.stored - tolerance - a.balance, 0.0);
+  a.peak = std::max(std::fabs(a.step), a.peak * c.peak_keep);
+  if (a.balance < 0.0 && a.peak > 0.0) {
+    h = clamped(h, std::max(0.5 * (a.stored + a.balance + tolerance), c.trickle * c.period) / a.peak);
+  }
+  return h;
+}
+
+}  // namespace pliant::impedance

@@ -1,0 +1,226 @@
+// One frame that the stack holds: a pose error in, a wrench and the energies of its axes out.
+#pragma once
+
+#include <vector>
+
+#include "axis.hpp"
+#include "rotation.hpp"
+
+namespace pliant::impedance {
+
+struct TaskConfig {
+  int axes;  // 3, or 6 with rotation
+  Shape shape;
+  double rate_floor[2];              // m/s, rad/s
+  std::vector<unsigned char> moves;  // (n) whether the joint moves the frame
+};
+
+struct Pose {
+  double position[3];
+  double rotation[9];  // R_world_frame, row-major
+  bool oriented;
+};
+
+struct TaskState {
+  double work;      // J that the torque of this task, as it was sent, took in from the robot since the last tick
+  double supplied;  // J, by the moving reference
+  double oriented;  // whether the last reference had an orientation
+  double position[3], rotation[9];  // of the last reference
+  double supply[6];                 // wrench that the last reference worked against, N and N m
+  Axis axis[6];
+  AxisState state[6];
+};
+
+// Everything that is known of a tick before the state may change.
+struct TaskInput {
+  Pose actual, desired;
+  const double* retune = nullptr;  // (4, axes): stiffness, force_max, range, linear_range
+};
+
+// What a task adds to the totals of the stack.
+struct TaskEnergies {
+  double stored, supplied, absorbed, dissipated, tuning, spendable;
+};
+
+// Where the errors of a task stand, and what brought them there.
+struct TaskMotion {
+  double error[6] = {}, robot[6] = {};  // now; with the target of the last tick
+  double work[6] = {};                  // J that each axis took in from the robot
+  bool restarts = false;                // the rotation's axes start anew
+  bool by_target = false;               // and it is the target that made them do so
+};
+
+class Task {
+ public:
+  static constexpr int kRows = 8;  // force, error, rate, threshold, converging, turning, margin, balance: (k) each
+  static constexpr int kSums = 5;  // stored, supplied, dissipated, tuning, moment scale
+
+  Task(const AxisConfig& axis, TaskConfig config) : axis_(axis), config_(std::move(config)) {}
+
+  int axes() const { return config_.axes; }
+  bool moves(int joint) const { return config_.moves[joint]; }
+  int channels() const { return 6 + kRows * axes() + kSums; }
+
+  TaskEnergies step(TaskState& state, const TaskInput& in, bool first, double* channel) const {
+    const int k = axes();
+    const bool oriented = k == 6 && in.desired.oriented;
+    const TaskMotion motion = motion_of(state, in, oriented, first);
+    if (!first) book_supply(state, in.desired, oriented && state.oriented != 0.0);
+    double threshold[6];
+    TaskEnergies sum{};
+    for (int i = 0; i < k; ++i) {
+      move_axis(state, in, motion, first, i);
+      const AxisForce f = update_force(axis_, config_.shape, state.axis[i], state.state[i], motion.error[i], floor(i), i >= 3);
+      threshold[i] = f.threshold;
+      sum.spendable += f.spendable;
+    }
+    double* rows = channel + 6;
+    rows[kRows * k + 4] = set_wrench(state, k, motion.error, channel);
+    for (int i = 0; i < k; ++i) report(state, i, threshold[i], rows, sum);
+    remember(state, in.desired, oriented);
+    sum.supplied = state.supplied;
+    const double sums[4] = {sum.stored, sum.supplied, sum.dissipated, sum.tuning};
+    std::copy(sums, sums + 4, rows + kRows * k);
+    return sum;
+  }
+
+ private:
+  double floor(int i) const { return config_.rate_floor[i >= 3]; }
+
+  TaskMotion motion_of(const TaskState& state, const TaskInput& in, bool oriented, bool first) const {
+    TaskMotion m;
+    for (int i = 0; i < 3; ++i) {
+      m.error[i] = in.desired.position[i] - in.actual.position[i];
+      m.robot[i] = state.position[i] - in.actual.position[i];
+    }
+    if (oriented) log_difference(in.desired.rotation, in.actual.rotation, m.error + 3);
+    if (first) return m;
+    const bool same_axes = oriented == (state.oriented != 0.0);
+    std::copy(m.error + 3, m.error + 6, m.robot + 3);
+    if (!same_axes) {
+      m.restarts = m.by_target = true;
+    } else if (oriented) {
+      if (!std::equal(state.rotation, state.rotation + 9, in.desired.rotation)) {
+        log_difference(state.rotation, in.actual.rotation, m.robot + 3);
+      }
+      m.restarts = jumps(state, m.error);
+      const bool robot_jumps = jumps(state, m.robot);
+      m.by_target = !robot_jumps;
+      if (robot_jumps && !m.restarts) std::copy(m.error + 3, m.error + 6, m.robot + 3);
+    }
+    if (axis_.account.active) share_work(state, m);
+    return m;
+  }
+
+  // The work of one axis is h times its motion. The torque was held in the joints, though, not the force at the frame, and
+  // part of it may not have been sent: what is left over goes to the axes by the size of their work.
+  void share_work(const TaskState& state, TaskMotion& m) const {
+    double weight[6], total = 0.0, sum = 0.0;
+    for (int i = 0; i < axes(); ++i) {
+      const bool starts = m.restarts && i >= 3;
+      m.work[i] = starts ? 0.0 : state.state[i].force * (m.robot[i] - state.state[i].error);
+      weight[i] = m.restarts ? (starts ? 1.0 : 0.0) : std::fabs(m.work[i]);
+      total += weight[i];
+      sum += m.work[i];
+    }
+    for (int i = 0; i < axes(); ++i) m.work[i] += (state.work - sum) * (total > 0.0 ? weight[i] / total : 1.0 / axes());
+  }
+
+  void move_axis(TaskState& state, const TaskInput& in, const TaskMotion& m, bool first, int i) const {
+    const Shape shape = config_.shape;
+    Axis& p = state.axis[i];
+    AxisState& s = state.state[i];
+    const double error = m.error[i];
+    if (first) {
+      if (in.retune) p = tuned(in.retune, i);
+      start(s, shape, p, error, floor(i), axis_.attractor);
+      update_rate(axis_.attractor, s, error, floor(i));
+      return;
+    }
+    if (m.restarts && i >= 3) {
+      restart(axis_, shape, p, s, error, m.work[i], m.by_target);
+    } else {
+      book_motion(axis_, shape, p, s, error, {m.robot[i], m.work[i]}, floor(i));
+    }
+    if (in.retune) retune(axis_, shape, p, s, error, tuned(in.retune, i));
+    push_error(s, error);
+  }
+
+  void report(const TaskState& state, int i, double threshold, double* rows, TaskEnergies& sum) const {
+    const AxisState& s = state.state[i];
+    const double stored = axis_.account.active ? s.account.stored : energy(config_.shape, state.axis[i], s.error);
+    const double margin = s.absorbed + s.injected - (stored - s.energy_start);
+    const double row[kRows] = {s.force, s.error, s.rate, threshold, s.converging, s.turning, margin, s.account.balance};
+    for (int r = 0; r < kRows; ++r) rows[r * axes() + i] = row[r];
+    sum.stored += stored;
+    sum.absorbed += s.absorbed;
+    sum.dissipated += margin;
+    sum.tuning += s.injected;
+  }
+
+  Axis tuned(const double* retune, int i) const {
+    const int k = axes();
+    return make_axis(config_.shape, retune[i], retune[k + i], retune[2 * k + i], retune[3 * k + i]);
+  }
+
+  // A rotation error that passes pi comes back from the other side.
+  static bool jumps(const TaskState& state, const double* error) {
+    double along = 0.0, size = 0.0;
+    for (int i = 3; i < 6; ++i) {
+      const double step = error[i] - state.state[i].error;
+      size += step * step;
+      along += error[i] * state.state[i].error;
+    }
+    return along < 0.0 && size > kPi * kPi;
+  }
+
+  static void book_supply(TaskState& state, const Pose& desired, bool rotates) {
+    for (int i = 0; i < 3; ++i) state.supplied += state.supply[i] * (desired.position[i] - state.position[i]);
+    if (!rotates) return;
+    double turn[3];
+    log_difference(desired.rotation, state.rotation, turn);
+    for (int i = 0; i < 3; ++i) state.supplied += state.supply[3 + i] * turn[i];
+  }
+
+  // The wrench m = J_l^-1 h turns the robot, J_l^-T h meets the reference. J_l^-1 may lift the moment above F_max: then all
+  // three h shrink by one factor, which keeps the moment conjugate to them. Returns the factor.
+  double set_wrench(TaskState& state, int k, const double* error, double* wrench) const {
+    double h[6] = {};
+    for (int i = 0; i < k; ++i) h[i] = state.state[i].force;
+    std::copy(h, h + 3, wrench);
+    std::copy(h, h + 3, state.supply);
+    std::fill(wrench + 3, wrench + 6, 0.0);
+    if (k < 6) return 1.0;
+    left_jacobian_inverse_times(error + 3, h + 3, 1.0, wrench + 3);
+    left_jacobian_inverse_times(error + 3, h + 3, -1.0, state.supply + 3);
+    const double scale = axis_.account.active ? moment_scale(state, wrench) : 1.0;
+    if (scale == 1.0) return scale;
+    for (int i = 3; i < 6; ++i) {
+      state.state[i].force *= scale;
+      wrench[i] *= scale;
+      state.supply[i] *= scale;
+    }
+    return scale;
+  }
+
+  // Axes that are off have no bound of their own: they would let nothing of the others through.
+  static double moment_scale(const TaskState& state, const double* wrench) {
+    double scale = 1.0;
+    for (int i = 3; i < 6; ++i) {
+      const double bound = state.axis[i].force_max;
+      if (bound > 0.0 && std::fabs(wrench[i]) * scale > bound) scale = bound / std::fabs(wrench[i]);
+    }
+    return scale;
+  }
+
+  static void remember(TaskState& state, const Pose& desired, bool oriented) {
+    std::copy(desired.position, desired.position + 3, state.position);
+    if (oriented) std::copy(desired.rotation, desired.rotation + 9, state.rotation);
+    state.oriented = oriented ? 1.0 : 0.0;
+  }
+
+  AxisConfig axis_;
+  TaskConfig config_;
+};
+
+}  // namespace pliant::impedance
