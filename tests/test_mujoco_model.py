@@ -36,7 +36,7 @@ def disagreement(robot: Robot, model: mujoco.MjModel, rng: np.random.Generator, 
             J = pin.computeFrameJacobian(robot.model, data, q, robot.frame_id(frame), pin.LOCAL_WORLD_ALIGNED)
             linear, angular = np.zeros((3, robot.n)), np.zeros((3, robot.n))
             mujoco.mj_jacSite(model, mj, linear, angular, model.site(frame).id)
-            worst = max(worst, np.abs(np.vstack([linear, angular]) - J).max())
+            worst = max(worst, np.abs(np.vstack([linear, angular]) - J.reshape(6, -1)).max())
     return worst
 
 

@@ -16,6 +16,8 @@ from pliant.spatial import Array
 
 VISUAL_GROUP = 2
 """geom group of shapes that are drawn and never touch anything"""
+_LEAST = 1e-12
+"""kg, kg m²: MuJoCo wants some mass on every moving body, also between two joints at one place"""
 
 
 def spec_from_robot(robot: Robot) -> mujoco.MjSpec:
@@ -54,7 +56,7 @@ def _joint_axes(model: pin.Model) -> list[Array]:
     data = model.createData()
     neutral = pin.neutral(model)
     return [
-        np.array(pin.computeJointJacobian(model, data, neutral, index)[:, model.joints[index].idx_v])
+        np.array(pin.computeJointJacobian(model, data, neutral, index)).reshape(6, -1)[:, model.joints[index].idx_v]
         for index in range(1, model.njoints)
     ]
 
@@ -86,10 +88,12 @@ def _set_inertia(body: mujoco.MjsBody, inertia: pin.Inertia) -> None:
     values, vectors = np.linalg.eigh(np.array(inertia.inertia))
     if np.linalg.det(vectors) < 0.0:
         vectors[:, 0] *= -1.0
+    if values[0] + values[1] < values[2]:
+        values[:] = values.mean()  # no body has these; MuJoCo refuses them. The plant refuses such a robot by name
     body.explicitinertial = True
-    body.mass = inertia.mass
+    body.mass = max(inertia.mass, _LEAST)
     body.ipos = inertia.lever
-    body.inertia = np.maximum(values, 1e-12)
+    body.inertia = np.maximum(values, _LEAST)
     body.iquat = quaternion(vectors)
 
 

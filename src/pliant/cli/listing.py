@@ -24,9 +24,13 @@ def list_command(console: Console, what: str | None) -> None:
 def _robots() -> Table:
     table = Table("robot", "joints from", "what it is", title="robots", title_justify="left")
     for entry in CATALOGUE.values():
-        origin = "pliant" if entry.own else "example-robot-data"
-        missing = "" if is_available(entry) else " (not installed: pip install 'pliant\\[robots]')"
-        table.add_row(entry.name, origin, entry.description + missing)
+        remedy = (
+            "pip install robot_descriptions"
+            if entry.package == "robot_descriptions"
+            else "pip install 'pliant\\[robots]'"
+        )
+        missing = "" if is_available(entry) else f" (not installed: {remedy})"
+        table.add_row(entry.name, entry.package, entry.description + missing)
     table.add_row("FILE", "you", "any fixed-base URDF or MJCF with revolute and prismatic joints")
     return table
 

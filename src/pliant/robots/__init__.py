@@ -4,66 +4,13 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from pliant.errors import MissingExtraError, RobotError, options
+from pliant.robots.catalogue import CATALOGUE as CATALOGUE
+from pliant.robots.catalogue import CatalogueEntry as CatalogueEntry
 
 _HERE = Path(__file__).parent
-
-
-@dataclass(frozen=True)
-class CatalogueEntry:
-    """A robot that can be loaded by name."""
-
-    name: str
-    description: str
-    file: str
-    """of pliant's own robots: URDF in this folder; of others: path below example-robot-data's robots"""
-    own: bool = True
-    rotor_inertia: float = 0.0
-    """kg m² at each joint; URDF has no field for it"""
-    home: tuple[float, ...] = ()
-    """rad; empty: zero, or the nearest angle within the limits"""
-    contact_radius: Mapping[str, float] = field(default_factory=dict)
-    """frame → m"""
-
-
-_ENTRIES = (
-    CatalogueEntry(
-        "lwr4",
-        "KUKA LWR 4+, 7 joints; kinematics, torques and speeds of the arm. Its dynamics are assumed: uniform cylinders"
-        " of 2.7 kg (four), 1.7, 1.6 and 0.3 kg, rotor inertia 0.05 kg m²",
-        "lwr4.urdf",
-        rotor_inertia=0.05,
-        home=(0.0, 0.6, 0.0, -1.4, 0.0, 1.0, 0.0),
-    ),
-    CatalogueEntry(
-        "iiwa14",
-        "KUKA LBR iiwa 14 R820, 7 joints; identified inertial parameters",
-        "iiwa14.urdf",
-        home=(0.0, 1.0472, 0.0, -1.13446, 0.2, 0.7854, 0.0),
-    ),
-    CatalogueEntry(
-        "leg3",
-        "three-joint leg (hip roll, hip pitch, knee) of uniform 1 kg rods, base 0.5 m above the floor",
-        "leg3.urdf",
-        home=(0.0, 0.7, -1.4),
-        contact_radius={"foot": 0.02},
-    ),
-    CatalogueEntry("panda", "Franka Emika Panda with its gripper", "panda_description/urdf/panda.urdf", own=False),
-    CatalogueEntry("ur5", "Universal Robots UR5, 6 joints", "ur_description/urdf/ur5_robot.urdf", own=False),
-    CatalogueEntry(
-        "anymal",
-        "ANYmal B quadruped on a fixed base, 12 joints",
-        "anymal_b_simple_description/robots/anymal.urdf",
-        own=False,
-    ),
-)
-
-CATALOGUE: Mapping[str, CatalogueEntry] = {entry.name: entry for entry in _ENTRIES}
-"""name → entry"""
 
 
 def locate(source: str) -> Path:
@@ -81,6 +28,10 @@ def locate(source: str) -> Path:
         return _locate_file(source)
     if entry.own:
         return _HERE / entry.file
+    if entry.package == "robot_descriptions":
+        if importlib.util.find_spec("robot_descriptions") is None:
+            raise MissingExtraError(f"robot {source!r} needs robot_descriptions: pip install robot_descriptions")
+        return _from_robot_descriptions(entry.file)
     folder = _example_robot_data()
     if folder is None:
         raise MissingExtraError(f"robot {source!r} needs example-robot-data: pip install 'pliant[robots]'")
@@ -91,7 +42,9 @@ def locate(source: str) -> Path:
 
 
 def is_available(entry: CatalogueEntry) -> bool:
-    """Whether the files of a catalogue robot are installed."""
+    """Whether the files of a catalogue robot are installed (of robot_descriptions: whether it can fetch them)."""
+    if entry.package == "robot_descriptions":
+        return importlib.util.find_spec("robot_descriptions") is not None
     folder = _HERE if entry.own else _example_robot_data()
     return folder is not None and (folder / entry.file).is_file()
 

@@ -63,7 +63,7 @@ class MujocoPlant(Plant[World]):
 
     Raises:
         ConfigError: the period is not a multiple of the physics step, or the step is too long for a contact.
-        RobotError: a frame that the robot does not have.
+        RobotError: a frame that the robot does not have, or a robot without masses.
         ShapeError: `start` does not fit the robot.
     """
 
@@ -82,6 +82,7 @@ class MujocoPlant(Plant[World]):
         observe: Sequence[str] = (),
         speed_stop: float | None = None,
     ) -> None:
+        robot.require_masses()
         self.robot = robot
         self.scene = scene or Scene()
         self.period = period
