@@ -99,7 +99,7 @@ def test_a_robot_that_is_not_there(source: str, words: list[str]) -> None:
         ("this is not xml", "not XML"),
         ("<scene/>", "root element is <scene>"),
         ('<robot name="x"><link name="a"/></robot>', "no joint that moves"),
-        ('<robot name="x"><joint name="j" type="revolute"/></robot>', "could not be read"),
+        ('<robot name="x"><joint name="j" type="revolute"/></robot>', "has no <link>"),
     ],
 )
 def test_a_file_that_is_no_robot(tmp_path: Path, content: str, word: str) -> None:
@@ -109,11 +109,12 @@ def test_a_file_that_is_no_robot(tmp_path: Path, content: str, word: str) -> Non
         Robot.load(path)
 
 
-def test_a_continuous_joint_says_what_to_do(tmp_path: Path) -> None:
+def test_a_continuous_joint_has_no_limits(tmp_path: Path) -> None:
     path = tmp_path / "wheel.urdf"
     path.write_text(CONTINUOUS_URDF)
-    with pytest.raises(RobotError, match="continuous; give it limits"):
-        Robot.load(path)
+    robot = Robot.load(path)
+    assert robot.model.nq == robot.n  # one angle, not sine and cosine
+    assert np.isinf(robot.position_upper).any()
 
 
 def test_missing_frames_and_joints_list_the_ones_there_are(lwr4: Robot) -> None:

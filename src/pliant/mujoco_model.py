@@ -88,7 +88,7 @@ def _set_inertia(body: mujoco.MjsBody, inertia: pin.Inertia) -> None:
     values, vectors = np.linalg.eigh(np.array(inertia.inertia))
     if np.linalg.det(vectors) < 0.0:
         vectors[:, 0] *= -1.0
-    if values[0] + values[1] < values[2]:
+    if values[0] + values[1] < values[2] * (1.0 - 1e-6) - 1e-12:  # not the rounding of a rod or a point
         values[:] = values.mean()  # no body has these; MuJoCo refuses them. The plant refuses such a robot by name
     body.explicitinertial = True
     body.mass = max(inertia.mass, _LEAST)

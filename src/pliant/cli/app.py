@@ -220,14 +220,21 @@ def list_(
 @app.command()
 @_guarded
 def doctor(
+    robot: Annotated[
+        str | None, typer.Argument(metavar="[ROBOT|FILE]", help="A robot: what was understood of it.")
+    ] = None,
     config: Annotated[
         Path | None, typer.Option("--config", metavar="CONFIG.toml", help="A configuration to check for unsafe gains.")
     ] = None,
 ) -> None:
-    """Checks this installation; with --config, whether a configuration is safe."""
+    """Checks this installation; with ROBOT, what was understood of a robot file; with --config, a configuration."""
     from pliant.cli.doctor import doctor_command
+    from pliant.cli.doctor_robot import print_robot
 
-    doctor_command(_out, config)
+    if robot is not None:
+        print_robot(_out, robot)
+    if robot is None or config is not None:
+        doctor_command(_out, config)
 
 
 def _version(show: bool) -> None:

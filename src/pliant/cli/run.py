@@ -38,6 +38,8 @@ def run_command(
     study, config = resolve(target, case, overrides, assignments)
     folder = output_folder(out or default_folder(study, config.case))
     experiment = study.build(config)
+    for note in experiment.robot.notes:
+        complain.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
     for warning in experiment.warnings:
         complain.print(f"warning: {warning}", style="yellow", markup=False, highlight=False, soft_wrap=True)
     with (

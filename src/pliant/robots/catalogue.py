@@ -50,7 +50,7 @@ _OWN = (
     ),
     CatalogueEntry(
         "iiwa7",
-        "KUKA LBR iiwa 7 R800, 7 joints; inertial parameters as published with lbr_description, limits of the data sheet",
+        "KUKA LBR iiwa 7 R800, 7 joints; inertias as published with lbr_description, limits of the data sheet",
         "iiwa7.urdf",
         home=(0.0, 1.0472, 0.0, -1.13446, 0.2, 0.7854, 0.0),
     ),
