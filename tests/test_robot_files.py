@@ -184,7 +184,7 @@ def test_the_plant_refuses_what_has_no_mass_by_name(tmp_path: Path) -> None:
     text = urdf().replace(urdf()[urdf().index("<inertial>") : urdf().index("</link><joint")], "")
     robot = load(tmp_path, text, "urdf")
     assert np.isfinite(robot.placement(np.array([0.3]), "arm")[0]).all()
-    with pytest.raises(RobotError, match="no link of .* has a mass"):
+    with pytest.raises(RobotError, match=r"no link of .* has a mass"):
         robot.require_masses()
 
 
