@@ -241,6 +241,8 @@ class Truth:
     """frame → (6,) contact wrench on the robot at that frame, world axes"""
     objects: Mapping[str, Array] = field(default_factory=_nothing)
     """object → (7,) position and quaternion (w, x, y, z) of every body in the scene that can move"""
+    limit_excess: Array | None = None
+    """(n,) by how much each joint stands beyond its position limit, rad (m where it slides); 0 within; None: unknown"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -139,6 +139,12 @@ def cross(a: Array, b: Array) -> Array:
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
+def symmetric(entries: npt.ArrayLike) -> Array:
+    """Matrix (3, 3) from its entries xx, yy, zz, xy, xz, yz."""
+    xx, yy, zz, xy, xz, yz = np.asarray(entries, dtype=np.float64)
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
 def all_finite(*arrays: Any) -> bool:
     """Whether every entry of every array is finite."""
     return all(np.isfinite(array).all() for array in arrays)

@@ -40,20 +40,27 @@ def run_command(
     experiment = study.build(config)
     for note in experiment.robot.notes:
         complain.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
-    for warning in experiment.warnings:
-        complain.print(f"warning: {warning}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+    _warn(complain, experiment.warnings)
     with (
         _page(console, complain, study, config, experiment, folder, live) as more,
         progress_bar(complain, f"{study.name} {config.case} · {config.controller}") as progress,
     ):
         result = run_case(study, config, folder, progress=progress, **more)
+    _warn(complain, result.warnings[len(experiment.warnings) :])
     summary = save_summary(study, [result], folder)
     if result.failure is not None:
+        if result.metrics:  # it reached its end, and its numbers may tell why it is none the less a failure
+            print_results(console, study, [result])
         raise RunFailedError(f"{result.failure}; the log until then is {result.log}")
     print_results(console, study, [result])
     console.print(f"\nlog      {result.log}\nsummary  {summary}", markup=False, highlight=False, soft_wrap=True)
     for figure in result.figures:
         console.print(f"figure   {figure}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _warn(complain: Console, warnings: Sequence[str]) -> None:
+    for warning in warnings:
+        complain.print(f"warning: {warning}", style="yellow", markup=False, highlight=False, soft_wrap=True)
 
 
 @contextmanager

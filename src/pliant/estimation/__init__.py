@@ -1,5 +1,6 @@
 """What the robot believes about itself and about its contacts."""
 
+from pliant.estimation.carried_mass import CarriedMass
 from pliant.estimation.direct import DirectEstimator
 from pliant.estimation.environment import EnvironmentEstimator
 from pliant.estimation.environment_fit import EnvironmentFit, FitConfig
@@ -7,10 +8,13 @@ from pliant.estimation.external_torque import ExternalTorqueEstimator
 from pliant.estimation.filtered import FilteredEstimator
 from pliant.estimation.filters import Butterworth, FirstOrder, LowPass
 from pliant.estimation.identification_poses import identification_poses
+from pliant.estimation.joint_acceleration import JointAcceleration
 from pliant.estimation.joint_state import JointStateFilter
 from pliant.estimation.momentum_observer import MomentumObserver
+from pliant.estimation.start_hints import start_hints
+from pliant.estimation.tare import Tare
 from pliant.estimation.tool_identification import ToolIdentification, excitation, identify_tool
-from pliant.estimation.wrench import CarriedMass, TouchThresholds, WrenchEstimator
+from pliant.estimation.wrench import TouchThresholds, WrenchEstimator
 
 __all__ = [
     "Butterworth",
@@ -22,13 +26,16 @@ __all__ = [
     "FilteredEstimator",
     "FirstOrder",
     "FitConfig",
+    "JointAcceleration",
     "JointStateFilter",
     "LowPass",
     "MomentumObserver",
+    "Tare",
     "ToolIdentification",
     "TouchThresholds",
     "WrenchEstimator",
     "excitation",
     "identification_poses",
     "identify_tool",
+    "start_hints",
 ]

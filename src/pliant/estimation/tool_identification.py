@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, ShapeError, SignalError
-from pliant.estimation.wrench import CarriedMass
+from pliant.estimation.carried_mass import CarriedMass
 from pliant.spatial import Array, skew
 
 CONDITION_LIMIT = 30.0

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pliant import loop
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
+from pliant.experiments.verdict import StartNotes, physical_verdict
 from pliant.interfaces import Observer
 from pliant.signals import Tick
 from pliant.telemetry.info import RunInfo
@@ -52,7 +54,8 @@ def run_case(
         None if folder is None else folder / f"{stem}.mcap", run_info(study, config, wired), channels=wired.channels
     )
     ticks = round(config.duration / wired.plant.period)
-    watchers: list[Observer] = [recorder, *observers]
+    notes = StartNotes()
+    watchers: list[Observer] = [recorder, notes, *observers]
     if progress is not None:
         watchers.append(_Reporter(progress, ticks))
     with recorder:
@@ -61,6 +64,7 @@ def run_case(
         )
         recorder.close(outcome.failure)
     log = recorder.log()
+    wired = replace(wired, warnings=(*wired.warnings, *(notes.sentences or ())))
     return _measured(study, config, wired, log, outcome.failure, folder, figures)
 
 
@@ -99,7 +103,8 @@ def _measured(
         return Result(config, (), failure, wired.warnings, path)
     drawn = study.figures(config, wired, log, folder) if folder is not None and figures else []
     measured = study.metrics(config, log)
-    return Result(config, measured, study.verdict(config, measured), wired.warnings, path, tuple(drawn))
+    failure = physical_verdict(log, wired.robot) or study.verdict(config, measured)
+    return Result(config, measured, failure, wired.warnings, path, tuple(drawn))
 
 
 class _Reporter:

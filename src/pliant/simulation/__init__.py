@@ -5,9 +5,11 @@ from pliant.simulation.force_sensor import ForceSensor
 from pliant.simulation.imperfections.config import Imperfections
 from pliant.simulation.imperfections.plant import ImperfectPlant, ImperfectWorld
 from pliant.simulation.joint_effects import JointEffects
+from pliant.simulation.joint_stops import JointStops
 from pliant.simulation.link_capsule import LinkCapsule
-from pliant.simulation.plant import MujocoPlant, World
+from pliant.simulation.plant import MujocoPlant
 from pliant.simulation.scene import Ball, Box, Plane, Scene, Surface, floor, table, wall
+from pliant.simulation.world import World
 
 __all__ = [
     "Ball",
@@ -17,6 +19,7 @@ __all__ = [
     "ImperfectWorld",
     "Imperfections",
     "JointEffects",
+    "JointStops",
     "LinkCapsule",
     "MujocoPlant",
     "Plane",

@@ -3,43 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from pliant.errors import ConfigError, RunFailedError
+from pliant.errors import RunFailedError
 from pliant.interfaces import Compensation, Plant
-from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
 from pliant.signals import Command, Measurement, Truth
-from pliant.simulation.contact.explicit import ContactState, ExplicitContacts, explicit_contacts
-from pliant.simulation.contact.pairs import PairOfGeoms, pairs_of
-from pliant.simulation.contact.recipe import add_pair, apply_surface
+from pliant.simulation.compiled_world import WorldParts
+from pliant.simulation.contact.explicit import ExplicitContacts, explicit_contacts
+from pliant.simulation.contact.mujoco_forces import contact_wrenches
+from pliant.simulation.contact.pairs import pairs_of
 from pliant.simulation.disturbances import Push
-from pliant.simulation.force_sensor import ForceSensor
+from pliant.simulation.equilibrium import holding_torque
+from pliant.simulation.force_sensor import ForceSensor, sensor_reading
 from pliant.simulation.joint_effects import JointEffects
+from pliant.simulation.joint_stops import JointStops, limits_of
 from pliant.simulation.link_capsule import LinkCapsule
 from pliant.simulation.scene import Plane, Scene
-from pliant.spatial import Array, cross
-
-
-@dataclass(slots=True)
-class World:
-    """State of the simulated world. Consumed by `step`."""
-
-    data: mujoco.MjData
-    ticks: int
-    """control periods since the start"""
-    wrenches: dict[str, Array]
-    """frame → (6,) contact wrench of the last physics step, world axes"""
-    touching: frozenset[str]
-    """frames and robot parts that touched something in the last physics step"""
-    contacts: ContactState | None = None
-    """of the explicit contact law"""
-    pushes: list[Push] = field(default_factory=list[Push])
-    """more disturbances than the plant was built with; may be changed between two steps"""
+from pliant.simulation.stepping import shares, substeps
+from pliant.simulation.world import World
+from pliant.spatial import Array
 
 
 class MujocoPlant(Plant[World]):
@@ -54,6 +40,7 @@ class MujocoPlant(Plant[World]):
         physics_step: s; None: 0.5 ms, or 20 µs where the scene's contacts are explicit forces.
         start: (n,) configuration at the start, rad; None: the robot's home.
         joints: friction, damping and compensation of the joints.
+        stops: how hard the joints' mechanical limits are.
         sensors: force/torque sensors.
         pushes: disturbances.
         links: parts of the robot that touch things along their length, beside the frames with a contact radius.
@@ -76,6 +63,7 @@ class MujocoPlant(Plant[World]):
         physics_step: float | None = None,
         start: npt.ArrayLike | None = None,
         joints: JointEffects | None = None,
+        stops: JointStops | None = None,
         sensors: Sequence[ForceSensor] = (),
         pushes: Sequence[Push] = (),
         links: Sequence[LinkCapsule] = (),
@@ -87,10 +75,9 @@ class MujocoPlant(Plant[World]):
         self.scene = scene or Scene()
         self.period = period
         explicit = self.scene.contact == "explicit"
-        if physics_step is None:
-            physics_step = 2e-5 if explicit else 5e-4
-        self.substeps = _substeps(period, physics_step)
-        self.joints = joints or JointEffects()
+        physics_step = physics_step if physics_step is not None else 2e-5 if explicit else 5e-4
+        self.substeps = substeps(period, physics_step)
+        self.joints, self.stops = joints or JointEffects(), stops or JointStops()
         self.sensors = tuple(sensors)
         self.pushes = tuple(pushes)
         self.links = tuple(links)
@@ -101,10 +88,10 @@ class MujocoPlant(Plant[World]):
         frames += [link.start for link in self.links]
         for frame in [*frames, *(link.end for link in self.links)]:
             robot.frame_id(frame)
-        self._parts = {_touch(frame): frame for frame in robot.contact_radius}
-        self._parts |= {_along(link.start): link.start for link in self.links}
+        parts = WorldParts(robot, self.scene, self.joints, self.stops, self.links)
+        self._parts = parts.touching_geoms
         pairs = pairs_of(self.scene, self._parts)
-        self.model = self._compile(physics_step, pairs)
+        self.model = parts.compile(physics_step, pairs)
         self.explicit = explicit_contacts(self.model, self.start, pairs) if explicit else None
         self._sites = {name: self.model.site(name).id for name in dict.fromkeys(frames)}
         self._movable = {
@@ -113,6 +100,7 @@ class MujocoPlant(Plant[World]):
             if not isinstance(thing, Plane) and thing.mass > 0.0
         }
         self._contact_frames = {self.model.geom(geom).id: frame for geom, frame in self._parts.items()}
+        self._lower, self._upper = limits_of(self.model, robot)
         self._felt = {s: [f for f in self._parts.values() if robot.carries(s.frame, f)] for s in self.sensors}
 
     # ------------------------------------------------------------------ Plant
@@ -122,39 +110,49 @@ class MujocoPlant(Plant[World]):
         return self.joints.compensation
 
     def init(self) -> tuple[Measurement, World]:
+        """The first measurement: at rest, held by the torque that keeps the robot in equilibrium (as far as the torque
+        limits reach); it is what the measurement says was sent."""
         data = mujoco.MjData(self.model)
         data.qpos[: self.robot.n] = self.start
-        return self._started(World(data, 0, self._no_wrenches(), frozenset()))
+        world = World(data, 0, self._no_wrenches(), frozenset(), np.zeros(self.robot.n))
+        self._refresh(world)
+        world.torque = holding_torque(self.model, data, self.robot.n, self.robot.torque_limit)
+        return self._started(world)
 
     def resume(self, world: World) -> tuple[Measurement, World]:
         """Goes on where a plant of the same robot and the same things stopped, for example one with another table."""
         data = mujoco.MjData(self.model)
         data.qpos[:], data.qvel[:], data.time = world.data.qpos, world.data.qvel, world.data.time
-        return self._started(World(data, world.ticks, self._no_wrenches(), frozenset(), pushes=world.pushes))
+        again = World(data, world.ticks, self._no_wrenches(), frozenset(), world.torque, pushes=world.pushes)
+        return self._started(again)
 
     def _started(self, world: World) -> tuple[Measurement, World]:
-        data = world.data
-        mujoco.mj_step1(self.model, data)
-        self._apply(world, np.zeros(self.robot.n))  # what the robot compensates by itself, before the first command
-        mujoco.mj_forward(self.model, data)
+        self._refresh(world)
         if self.explicit is None:
             self._read_contacts(world)
-        else:
+        mujoco.mj_step1(self.model, world.data)
+        return self._measure(world), world
+
+    def _refresh(self, world: World) -> None:
+        """Forces and accelerations under the held torque, without letting time pass."""
+        data = world.data
+        mujoco.mj_step1(self.model, data)
+        if self.explicit is not None:
             world.contacts = self.explicit.init(data)
             self._read_explicit(world, self.explicit)
-        mujoco.mj_step1(self.model, data)
-        return self._measure(world, np.zeros(self.robot.n)), world
+        self._apply(world)
+        mujoco.mj_forward(self.model, data)
 
     def step(self, command: Command, world: World) -> tuple[Measurement, World]:
         limit = self.robot.torque_limit
-        torque = np.clip(command.torque, -limit, limit)
+        world.torque = np.clip(command.torque, -limit, limit)
         if self.explicit is None:
-            self._step_mujoco(world, torque)
+            self._step_mujoco(world)
         else:
-            self._step_explicit(world, torque, self.explicit)
+            self._step_explicit(world, self.explicit)
         world.ticks += 1
         self._check_speed(world)
-        return self._measure(world, torque), world
+        return self._measure(world), world
 
     def truth(self, world: World) -> Truth:
         n, data = self.robot.n, world.data
@@ -166,6 +164,7 @@ class MujocoPlant(Plant[World]):
             positions={name: data.site_xpos[site].copy() for name, site in self._sites.items()},
             rotations={name: data.site_xmat[site].reshape(3, 3).copy() for name, site in self._sites.items()},
             wrenches=dict(world.wrenches),
+            limit_excess=np.maximum(0.0, np.maximum(self._lower - data.qpos[:n], data.qpos[:n] - self._upper)),
             objects={name: np.concatenate([data.xpos[body], data.xquat[body]]) for name, body in self._movable.items()},
         )
 
@@ -181,18 +180,18 @@ class MujocoPlant(Plant[World]):
             f" {self.speed_stop:g} times its speed limit"
         )
 
-    def _step_mujoco(self, world: World, torque: Array) -> None:
+    def _step_mujoco(self, world: World) -> None:
         for last in range(self.substeps - 1, -1, -1):
-            self._apply(world, torque)
+            self._apply(world)
             mujoco.mj_step2(self.model, world.data)
             if last == 0:
                 self._read_contacts(world)
             mujoco.mj_step1(self.model, world.data)
 
-    def _step_explicit(self, world: World, torque: Array, contacts: ExplicitContacts) -> None:
+    def _step_explicit(self, world: World, contacts: ExplicitContacts) -> None:
         assert world.contacts is not None
-        for steps in _shares(self.substeps, 4 if self._follows_state(world) else 1):
-            self._apply(world, torque)
+        for steps in shares(self.substeps, 4 if self._follows_state(world) else 1):
+            self._apply(world)
             contacts.advance(world.contacts, steps)
             mujoco.mj_step1(self.model, world.data)
         contacts.refresh(world.contacts)
@@ -201,6 +200,9 @@ class MujocoPlant(Plant[World]):
     def _follows_state(self, world: World) -> bool:
         """Whether something besides the held torque changes within a period."""
         return bool(self.pushes or world.pushes) or self.joints.compensation == "gravity+coriolis"
+
+    def _read_contacts(self, world: World) -> None:
+        world.wrenches, world.touching = contact_wrenches(self.model, world.data, self._contact_frames, self._sites)
 
     def _read_explicit(self, world: World, contacts: ExplicitContacts) -> None:
         assert world.contacts is not None
@@ -217,54 +219,10 @@ class MujocoPlant(Plant[World]):
     def _no_wrenches(self) -> dict[str, Array]:
         return {frame: np.zeros(6) for frame in self._contact_frames.values()}
 
-    def _compile(self, physics_step: float, pairs: Sequence[PairOfGeoms]) -> mujoco.MjModel:
-        spec = spec_from_robot(self.robot)
-        spec.option.timestep = physics_step
-        spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE | mujoco.mjtDisableBit.mjDSBL_AUTORESET
-        self._add_joint_effects(spec)
-        for frame, radius in self.robot.contact_radius.items():
-            site = spec.site(frame)
-            geom = site.parent.add_geom(
-                name=_touch(frame), type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=site.pos
-            )
-            geom.contype, geom.conaffinity, geom.mass, geom.rgba = 0, 0, 0.0, [0.20, 0.22, 0.25, 1.0]
-        for link in self.links:
-            link.add_to(spec, _along(link.start))
-        for thing in self.scene.things:
-            geom = thing.add_to(spec)
-            geom.contype, geom.conaffinity = 0, 0
-        if self.scene.contact == "explicit":
-            spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
-            pairs = []
-        for a, b, _ in pairs:
-            add_pair(spec, f"{a}|{b}", a, b)
-        _add_light(spec)
-        try:
-            model = spec.compile()
-        except ValueError as error:
-            raise ConfigError(f"MuJoCo cannot build robot {self.robot.name!r} in this scene: {error}") from error
-        for a, b, surface in pairs:
-            apply_surface(model, f"{a}|{b}", surface)
-        return model
-
-    def _add_joint_effects(self, spec: mujoco.MjSpec) -> None:
-        friction = np.broadcast_to(np.asarray(self.joints.friction, dtype=np.float64), (self.robot.n,))
-        damping = np.broadcast_to(np.asarray(self.joints.damping, dtype=np.float64), (self.robot.n,))
-        for index, name in enumerate(self.robot.joint_names):
-            joint = spec.joint(name)
-            joint.frictionloss = friction[index]
-            # MuJoCo's friction creeps below its limit; this viscosity is the largest that the step allows
-            joint.solref_friction = [0.0, -1.0 / spec.option.timestep]
-            joint.solimp_friction = [0.99, 0.99, 1e-3, 0.5, 2.0]
-            joint.damping = [damping[index], 0.0, 0.0]
-            if self.joints.compensation == "gravity":
-                spec.body(name).gravcomp = 1.0
-
-    def _apply(self, world: World, torque: Array) -> None:
+    def _apply(self, world: World) -> None:
         n, data = self.robot.n, world.data
         data.qfrc_applied[:] = 0.0
-        data.qfrc_applied[:n] = torque
+        data.qfrc_applied[:n] = world.torque
         if self.joints.compensation == "gravity+coriolis":
             data.qfrc_applied[:n] += data.qfrc_bias[:n]
         for push in (*self.pushes, *world.pushes):
@@ -274,92 +232,20 @@ class MujocoPlant(Plant[World]):
                 force = np.array(push.force)
                 mujoco.mj_applyFT(self.model, data, force, np.zeros(3), data.site_xpos[site], body, data.qfrc_applied)
 
-    def _read_contacts(self, world: World) -> None:
-        """Sums the contact forces on every contact frame."""
-        data = world.data
-        world.wrenches = self._no_wrenches()
-        touching: set[str] = set()
-        local = np.zeros(6)
-        for index in range(data.ncon):
-            contact = data.contact[index]
-            for geom, sign in ((int(contact.geom[0]), -1.0), (int(contact.geom[1]), 1.0)):
-                frame = self._contact_frames.get(geom)
-                if frame is None:
-                    continue
-                mujoco.mj_contactForce(self.model, data, index, local)
-                force = sign * (contact.frame.reshape(3, 3).T @ local[:3])
-                lever = contact.pos - data.site_xpos[self._sites[frame]]
-                world.wrenches[frame] += np.concatenate([force, cross(lever, force)])
-                touching.add(frame)
-        world.touching = frozenset(touching)
-
-    def _measure(self, world: World, torque: Array) -> Measurement:
+    def _measure(self, world: World) -> Measurement:
         n, data = self.robot.n, world.data
         return Measurement(
             time=world.ticks * self.period,
             q=data.qpos[:n].copy(),
             v=data.qvel[:n].copy(),
-            torque=torque.copy(),
-            torque_sent=torque,
+            torque=world.torque.copy(),
+            torque_sent=world.torque,
             wrenches=self._sensor_readings(world),
         )
 
     def _sensor_readings(self, world: World) -> Mapping[str, Array]:
-        data = world.data
         readings: dict[str, Array] = {}
         for sensor in self.sensors:
-            site = self._sites[sensor.frame]
-            R_world_sensor = data.site_xmat[site].reshape(3, 3)
-            force, moment = np.zeros(3), np.zeros(3)
-            for frame in self._felt[sensor]:
-                wrench, lever = world.wrenches[frame], data.site_xpos[self._sites[frame]] - data.site_xpos[site]
-                force += wrench[:3]
-                moment += wrench[3:] + cross(lever, wrench[:3])
-            reading = np.concatenate([R_world_sensor.T @ force, R_world_sensor.T @ moment])
-            if sensor.mass > 0.0:
-                reading += self._carried(sensor, site, data)
-            readings[sensor.frame] = reading
+            felt = [(self._sites[frame], world.wrenches[frame]) for frame in self._felt[sensor]]
+            readings[sensor.frame] = sensor_reading(self.model, world.data, sensor, self._sites[sensor.frame], felt)
         return readings
-
-    def _carried(self, sensor: ForceSensor, site: int, data: mujoco.MjData) -> Array:
-        """Weight and inertial force of the mass behind a sensor, at its frame and in its axes, (6,)."""
-        mujoco.mj_rnePostConstraint(self.model, data)
-        motion = np.zeros(6)  # angular first; linear acceleration minus gravity
-        mujoco.mj_objectAcceleration(self.model, data, mujoco.mjtObj.mjOBJ_SITE, site, motion, 1)
-        spin = np.zeros(6)
-        mujoco.mj_objectVelocity(self.model, data, mujoco.mjtObj.mjOBJ_SITE, site, spin, 1)
-        center = np.array(sensor.center)
-        acceleration = motion[3:] + cross(motion[:3], center) + cross(spin[:3], cross(spin[:3], center))
-        force = -sensor.mass * acceleration
-        return np.concatenate([force, cross(center, force)])
-
-
-def _touch(frame: str) -> str:
-    """Name of the geom with which a frame touches things."""
-    return f"touch:{frame}"
-
-
-def _along(frame: str) -> str:
-    """Name of the geom with which a link that starts at a frame touches things."""
-    return f"along:{frame}"
-
-
-def _substeps(period: float, physics_step: float) -> int:
-    if not (physics_step > 0.0 and period > 0.0):
-        raise ConfigError(f"period and physics step must be above zero, got {period} s and {physics_step} s")
-    ratio = period / physics_step
-    if abs(ratio - round(ratio)) > 1e-6 or round(ratio) < 1:
-        raise ConfigError(
-            f"the control period must be a whole multiple of the physics step, got {period:g} s and {physics_step:g} s"
-        )
-    return round(ratio)
-
-
-def _shares(total: int, parts: int) -> list[int]:
-    """A whole number in about equal parts, none of them zero."""
-    return [len(part) for part in np.array_split(np.arange(total), min(parts, total))]
-
-
-def _add_light(spec: mujoco.MjSpec) -> None:
-    spec.worldbody.add_light(pos=[1.0, -1.5, 3.0], dir=[-0.3, 0.45, -0.85], castshadow=False)
-    spec.worldbody.add_light(pos=[-1.5, -1.0, 2.0], dir=[0.5, 0.3, -0.6], castshadow=False)

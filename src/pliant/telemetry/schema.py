@@ -85,7 +85,13 @@ def signature(tick: Tick) -> tuple[Any, ...]:
         tuple(tick.command.diagnostics),
         None
         if truth is None
-        else (tuple(truth.positions), tuple(truth.rotations), tuple(truth.wrenches), tuple(truth.objects)),
+        else (
+            tuple(truth.positions),
+            tuple(truth.rotations),
+            tuple(truth.wrenches),
+            tuple(truth.objects),
+            truth.limit_excess is None,
+        ),
     )
 
 
@@ -211,7 +217,9 @@ def _truth(tick: Tick, joints: tuple[str, ...]) -> list[Group]:
     truth = tick.truth
     if truth is None:
         return []
-    fields = (("q", _JOINT), ("v", _JOINT_RATE), ("torque", _TORQUE))
+    fields = [("q", _JOINT), ("v", _JOINT_RATE), ("torque", _TORQUE)]
+    if truth.limit_excess is not None:
+        fields.append(("limit_excess", _JOINT))
     channels = tuple(Channel(f"truth/{name}", unit, (len(joints),), joints) for name, unit in fields)
     found = [Group(_attributes([f"truth.{name}" for name, _ in fields]), channels)]
     for field, name, unit, shape in (

@@ -156,6 +156,7 @@ def with_scene(plant: MujocoPlant, scene: Scene) -> MujocoPlant:
         physics_step=float(plant.model.opt.timestep),
         start=plant.start,
         joints=plant.joints,
+        stops=plant.stops,
         sensors=plant.sensors,
         pushes=plant.pushes,
         links=plant.links,

@@ -1,0 +1,88 @@
+"""When a run that reached its end is not a success all the same, whatever it was for."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pliant.estimation import start_hints
+from pliant.robot import Robot
+from pliant.signals import Tick
+from pliant.spatial import Array
+from pliant.telemetry.log import Log
+
+LIMIT_TOLERANCE = math.radians(1.0)
+"""rad beyond its limit that a joint may stand; twice what a stop gives under the joint's whole torque"""
+LIMIT_TOLERANCE_LINEAR = 2e-3
+"""m, of joints that slide"""
+
+
+def physical_verdict(log: Log, robot: Robot) -> str | None:
+    """What makes a simulated run a failure in any study or task, in one sentence; None if nothing does.
+
+    - A joint passed its position limit by more than a tolerance.
+    - A frame was asked for a force and no part of the robot ever touched anything.
+
+    Args:
+        log: of the run; without `truth/…` nothing can be said.
+        robot: that ran.
+    """
+    found = [text for text in (_limit_passed(log, robot), _never_touched(log)) if text is not None]
+    return "; ".join(found) or None
+
+
+class StartNotes:
+    """An observer that looks at the first tick: what is odd there is a warning of the run."""
+
+    def __init__(self) -> None:
+        self.sentences: tuple[str, ...] | None = None
+
+    def __call__(self, tick: Tick) -> None:
+        if self.sentences is None:
+            free = tick.truth is None or not any(np.any(wrench) for wrench in tick.truth.wrenches.values())
+            self.sentences = start_hints(tick.estimate) if free else ()
+
+
+def _limit_passed(log: Log, robot: Robot) -> str | None:
+    if "truth/limit_excess" not in log:
+        return None
+    excess, time = log["truth/limit_excess"], log.time("truth/limit_excess")
+    slides = _slides(robot)
+    share = excess / np.where(slides, LIMIT_TOLERANCE_LINEAR, LIMIT_TOLERANCE)
+    joint = int(np.argmax(share.max(axis=0)))
+    beyond = share[:, joint] > 1.0
+    if not beyond.any():
+        return None
+    worst = float(excess[:, joint].max())
+    size, allowed = (
+        (f"{1e3 * worst:.1f} mm", f"{1e3 * LIMIT_TOLERANCE_LINEAR:g} mm")
+        if slides[joint]
+        else (f"{math.degrees(worst):.1f}°", f"{math.degrees(LIMIT_TOLERANCE):g}°")
+    )
+    since = float(time[int(np.argmax(beyond))])
+    return (
+        f"joint limit passed: {robot.joint_names[joint]} by {size}, first at t = {since:.2f} s (more than {allowed}"
+        " beyond a limit is not a success)"
+    )
+
+
+def _never_touched(log: Log) -> str | None:
+    names = log.matching("/wrench")
+    felt = [name for name in names if name.startswith("truth/")]
+    if not felt or any(np.any(log[name][:, :3]) for name in felt):
+        return None
+    for name in names:
+        if not name.startswith("reference/"):
+            continue
+        asked = float(np.linalg.norm(log[name][:, :3], axis=1).max())
+        if asked > 0.0:
+            frame = name.removeprefix("reference/").removesuffix("/wrench")
+            return f"never touched: frame {frame} was asked for {asked:.3g} N and the robot met nothing"
+    return None
+
+
+def _slides(robot: Robot) -> Array:
+    """(n,) which joints slide."""
+    kinds = [joint.shortname() for joint in list(robot.model.joints)[1:]]
+    return np.array([kind.startswith("JointModelP") for kind in kinds])
