@@ -217,7 +217,7 @@ class MujocoPlant(Plant[World]):
         world.touching = frozenset(touching)
 
     def _no_wrenches(self) -> dict[str, Array]:
-        return {frame: np.zeros(6) for frame in self._contact_frames.values()}
+        return {frame: np.zeros(6) for frame in self._parts.values()}
 
     def _apply(self, world: World) -> None:
         n, data = self.robot.n, world.data
@@ -244,8 +244,8 @@ class MujocoPlant(Plant[World]):
         )
 
     def _sensor_readings(self, world: World) -> Mapping[str, Array]:
-        readings: dict[str, Array] = {}
+        sites, readings = self._sites, dict[str, Array]()
         for sensor in self.sensors:
-            felt = [(self._sites[frame], world.wrenches[frame]) for frame in self._felt[sensor]]
-            readings[sensor.frame] = sensor_reading(self.model, world.data, sensor, self._sites[sensor.frame], felt)
+            felt = [(sites[frame], world.wrenches[frame]) for frame in self._felt[sensor]]
+            readings[sensor.frame] = sensor_reading(self.model, world.data, sensor, sites[sensor.frame], felt)
         return readings
