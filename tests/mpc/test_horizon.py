@@ -7,8 +7,8 @@ import itertools
 import numpy as np
 import pytest
 
-from pliant.errors import SignalError
-from pliant.mpc.horizon import along_horizon
+from pliant.errors import ConfigError, SignalError
+from pliant.mpc.horizon import HorizonReference, along_horizon, require_pushing
 from pliant.signals import Preview, Reference, TaskReference
 
 
@@ -59,3 +59,20 @@ def test_a_reference_that_is_not_finite_is_refused() -> None:
     task = TaskReference("tool", np.array([np.nan, 0.0, 0.5]))
     with pytest.raises(SignalError, match="must be finite"):
         along_horizon(Reference(0.0, (task,)), "tool", 2, 0.01)
+
+
+@pytest.mark.parametrize("normal", [(0.0, 0.0, 1.0), (0.0, -1.0, 0.0)])
+def test_a_force_that_pulls_on_the_surface_is_refused(normal: tuple[float, float, float]) -> None:
+    n = np.array(normal)
+
+    def horizon(force: float, node: int) -> HorizonReference:
+        wrench = np.tile(np.append(20.0 * n, np.zeros(3)), (4, 1))
+        wrench[node, :3] = force * n
+        zero = np.zeros((4, 3))
+        return HorizonReference(zero, None, np.zeros((4, 6)), wrench, None, ("press",) * 4)
+
+    require_pushing(horizon(0.0, 2), n)
+    require_pushing(horizon(20.0, 2), np.tile(n, (4, 1)))
+    for normals in (n, np.tile(n, (4, 1))):
+        with pytest.raises(ConfigError, match=r"a desired force of -5 N along the surface's outward normal .* pulls"):
+            require_pushing(horizon(-5.0, 3), normals)

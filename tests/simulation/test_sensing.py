@@ -8,6 +8,8 @@ from pydantic import ValidationError
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.signals import Measurement
+from pliant.simulation.imperfections.config import Imperfections
+from pliant.simulation.imperfections.link_config import per_joint
 from pliant.simulation.imperfections.sensing import Sensing, SensingConfig
 
 N = 3
@@ -131,3 +133,14 @@ def test_bad_values_are_refused_with_the_rule() -> None:
         Sensing(SensingConfig(delay=1.5e-3), PERIOD, N)
     with pytest.raises(ShapeError, match="noise_q must have 3 entries"):
         Sensing(SensingConfig(noise_q=(1.0, 2.0)), PERIOD, N)
+
+
+@pytest.mark.parametrize("n", [3, 6, 7, 9])
+def test_the_published_noise_fits_any_number_of_joints(n: int) -> None:
+    config = Imperfections.p3().sensing
+    noise = per_joint(config.noise_torque, n, "noise_torque", fitted=config.fit_joints)
+    np.testing.assert_array_equal(noise, [0.03, 0.03, 0.02, 0.02, 0.01, 0.01, 0.01, 0.01, 0.01][:n])
+    Sensing(config, 1e-3, n)
+    if n != 6:
+        with pytest.raises(ShapeError, match="noise_torque"):
+            Sensing(config.model_copy(update={"fit_joints": False}), 1e-3, n)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import Field
 
+from pliant.controllers.joint_limits import JointLimitsConfig
 from pliant.errors import ConfigError, options
 from pliant.experiments.config import Config
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
@@ -30,6 +31,9 @@ class CaseConfig(Config):
     robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
     seed: int = Field(default=0, ge=0, description="of every random draw")
     duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    joint_limits: JointLimitsConfig | None = Field(
+        default=None, description="springs that keep the joints off their limits, round any controller; none: without"
+    )
     variant: str = Field(
         default="", description="what distinguishes this run from others of the same case and controller"
     )

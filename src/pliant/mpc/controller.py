@@ -15,7 +15,7 @@ from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.compensation import CompensationState, Compensator
 from pliant.mpc.config import MpcConfig
-from pliant.mpc.horizon import HorizonReference, along_horizon
+from pliant.mpc.horizon import HorizonReference, along_horizon, require_pushing
 from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.plan import Plan, SafeTorque, plan_of, torque_from, usable
 from pliant.mpc.problem import MpcProblem, problem_from_robot
@@ -154,6 +154,8 @@ class MpcController(Controller[MpcState]):
             state.channels = diagnostics.of_no_solution(config.horizon, self.problem.m)
             return
         horizon = along_horizon(reference, config.frame, config.horizon, config.dt, self.compensator.lead)
+        if config.contact.axes != "local":  # whose normal turns with the tool, and may be any of its axes
+            require_pushing(horizon, self.problem.normals(horizon.task_rotation))
         state.compensation = self.compensator.integrate(estimate, reference, state.touching, state.compensation)
         horizon = self.compensator.shifted(horizon, state.compensation)
         self._write_environment(estimate, state)

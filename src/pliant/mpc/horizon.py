@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.errors import SignalError
+from pliant.errors import ConfigError, SignalError
 from pliant.signals import Preview, Reference
 from pliant.spatial import Array, all_finite
+
+_ROUNDING = 1e-6  # N; a force that is turned to other axes may point into the surface by as much
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,4 +107,26 @@ def _extrapolated(reference: Reference, frame: str, elapsed: Array) -> HorizonRe
         posture=None if reference.posture is None else np.tile(reference.posture, (count, 1)),
         phase=(reference.phase,) * count,
         task_rotation=None if task.task_rotation is None else np.tile(task.task_rotation, (count, 1, 1)),
+    )
+
+
+def require_pushing(horizon: HorizonReference, normals: Array) -> None:
+    """Refuses a desired force that pulls: a contact can only push.
+
+    Args:
+        horizon: with the reference's own wrenches.
+        normals: (3,) or (N+1, 3) outward normals of the surface, world axes.
+
+    Raises:
+        ConfigError: a desired reaction points into the surface.
+    """
+    along = np.sum(horizon.wrench[:, :3] * normals, axis=1)
+    if along.min() >= -_ROUNDING:
+        return
+    node = int(np.argmin(along))
+    normal = normals if normals.ndim == 1 else normals[node]
+    raise ConfigError(
+        f"a desired force of {along[node]:.3g} N along the surface's outward normal {np.round(normal, 3).tolist()}"
+        " pulls, and a contact can only push: ask for a reaction along the normal, or, where the surface faces the"
+        " other way, say so with contact.axes = 'surface' and contact.normal"
     )

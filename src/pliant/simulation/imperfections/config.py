@@ -31,7 +31,8 @@ class Imperfections(Config):
 
     @classmethod
     def p3(cls, *, pid: bool = True, computation_delay: float = 5e-3) -> Imperfections:
-        """The imperfect seven-joint arm of [FFMPC] sec. VI-B, its last joint locked.
+        """The imperfect seven-joint arm of [FFMPC] sec. VI-B, its last joint locked; for a robot of any other number
+        of joints the same values, from the base outwards: joints beyond the sixth have the noise of the sixth.
 
         Eq. 31 counts the torque sensor's delay of one cycle from the motor torque: what acted in the cycle that ends
         now, a reading without a delay here. The torque noise is the six values of the published code. That code also
@@ -56,6 +57,7 @@ class Imperfections(Config):
                 noise_v=1e-3,
                 noise_torque=(0.03, 0.03, 0.02, 0.02, 0.01, 0.01),
                 noise_force=0.01,
+                fit_joints=True,
             ),
         )
 

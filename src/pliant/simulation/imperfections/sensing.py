@@ -10,9 +10,9 @@ import numpy as np
 from pliant.configuration import Config
 from pliant.signals import Measurement
 from pliant.simulation.imperfections.delay import Delay, whole_periods
-from pliant.simulation.imperfections.link_config import PerJoint, quantity
+from pliant.simulation.imperfections.link_config import PerJoint, per_joint, quantity
 from pliant.simulation.seeding import generator
-from pliant.spatial import Array, as_vector
+from pliant.spatial import Array
 
 
 class SensingConfig(Config):
@@ -26,6 +26,11 @@ class SensingConfig(Config):
     noise_q: PerJoint = quantity(0.0, "rad", "standard deviation of the joint positions")
     noise_v: PerJoint = quantity(0.0, "rad/s", "standard deviation of the joint velocities")
     noise_torque: PerJoint = quantity(0.0, "N·m", "standard deviation of the joint torque sensors")
+    fit_joints: bool = quantity(
+        False,
+        "1",
+        "values per joint are those of another robot: joints beyond them take the last, what is too many is left out",
+    )
     noise_force: float = quantity(
         0.0, "N", "standard deviation of the force part of force/torque sensors", ge=0.0, le=1e3
     )
@@ -85,9 +90,9 @@ class Sensing:
         self._delay_torque: Delay[Array] = Delay(whole_periods(torque_delay, period, "delay of the torque sensors"))
         late = whole_periods(config.delay_force, period, "delay of the force signal")
         self._delay_force: Delay[Mapping[str, Array]] = Delay(late)
-        self._noise_q = as_vector(config.noise_q, n, "noise_q")
-        self._noise_v = as_vector(config.noise_v, n, "noise_v")
-        self._noise_torque = as_vector(config.noise_torque, n, "noise_torque")
+        self._noise_q = per_joint(config.noise_q, n, "noise_q", fitted=config.fit_joints)
+        self._noise_v = per_joint(config.noise_v, n, "noise_v", fitted=config.fit_joints)
+        self._noise_torque = per_joint(config.noise_torque, n, "noise_torque", fitted=config.fit_joints)
         self._noise_wrench = np.repeat([config.noise_force, config.noise_moment], 3)
         self._n = n
 

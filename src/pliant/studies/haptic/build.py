@@ -8,6 +8,7 @@ from typing import Any
 import pinocchio as pin
 
 from pliant.controllers.attractor import Law
+from pliant.controllers.joint_limits import with_joint_limits
 from pliant.controllers.stack import Stack
 from pliant.controllers.task import FrameTask
 from pliant.errors import ConfigError
@@ -56,7 +57,7 @@ def build(config: HapticConfig) -> Experiment:
         plant=plant_of(config, robot),
         estimator=WrenchEstimator(robot),
         source=references(config, robot),
-        controller=controller,
+        controller=with_joint_limits(controller, robot, config.joint_limits),
         channels=tuple(units),
         warnings=warnings,
     )

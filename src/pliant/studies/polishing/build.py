@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from pliant.controllers.joint_limits import with_joint_limits
 from pliant.errors import ConfigError
 from pliant.estimation import (
     Butterworth,
@@ -56,7 +57,7 @@ def build(config: PolishingConfig) -> Experiment:
         plant=plant_of(config, robot),
         estimator=estimator_of(config, believed, parameters),
         source=polishing_source(config, robot, lookahead),
-        controller=controller,
+        controller=with_joint_limits(controller, robot, config.joint_limits),
         channels=tuple(Channel(name, about.unit) for name, about in channels.items()),
         warnings=config.entry.advise(robot, parameters, config.period),
     )

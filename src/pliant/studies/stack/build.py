@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.controllers.config import StackConfig as StackParameters
+from pliant.controllers.joint_limits import with_joint_limits
 from pliant.controllers.profiles import linear_range
 from pliant.controllers.step_limit import CHANNELS, StepLimit
 from pliant.errors import ConfigError
@@ -55,6 +56,7 @@ def build(config: StackConfig) -> Experiment:
     believed = with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses"))
     controller = config.entry.build(believed, parameters, config.period)
     channels = tuple(Channel(name, about.unit) for name, about in getattr(controller, "channels", {}).items())
+    controller = with_joint_limits(controller, robot, config.joint_limits)
     if config.torque_step is not None:
         controller = StepLimit(controller, robot, config.torque_step)
         channels += tuple(Channel(name, unit) for name, unit in CHANNELS.items())
