@@ -22,7 +22,7 @@ def loaded(path: Path) -> ModuleType:
     return module
 
 
-@pytest.mark.parametrize("robot", ["iiwa14", "lwr4"])
+@pytest.mark.parametrize("robot", ["iiwa14", "lwr4", "ur5e"])
 def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
     loaded(EXAMPLE).main(robot)
     said = capsys.readouterr().out

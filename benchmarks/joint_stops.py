@@ -1,0 +1,63 @@
+"""How far each joint of the catalogue goes beyond its limit under 100 % of its torque, at rest on the stop and thrown.
+
+    python benchmarks/joint_stops.py                 every robot of the catalogue that is installed
+    python benchmarks/joint_stops.py iiwa14 lwr4     these
+
+At rest: the joint starts on its limit and is pushed for 0.5 s; the largest excess of the last 0.1 s. Thrown: it starts
+at the robot's home and is pushed for 1.5 s, the other joints hanging loose; the largest excess of all.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+
+from pliant.robot import Robot
+from pliant.robots import CATALOGUE, is_available
+from pliant.signals import Command
+from pliant.simulation import JointEffects, MujocoPlant
+
+
+def excess(plant: MujocoPlant, joint: int, torque: float, seconds: float, at: float | None) -> np.ndarray:
+    """(k,) degrees (mm where the joint slides)."""
+    _, world = plant.init()
+    if at is not None:
+        world.data.qpos[joint] = at
+        mujoco.mj_step1(plant.model, world.data)
+    torques = np.zeros(plant.robot.n)
+    torques[joint] = torque
+    found = []
+    for _ in range(round(seconds / plant.period)):
+        _, world = plant.step(Command(0.0, torques, np.zeros_like(torques)), world)
+        beyond = plant.truth(world).limit_excess
+        assert beyond is not None
+        found.append(beyond[joint])
+    return np.degrees(found)
+
+
+def main(robots: list[str]) -> None:
+    print(f"{'robot':<10} {'worst at rest':>24} {'worst thrown':>24}   [degrees]")
+    for name in robots or [name for name, entry in CATALOGUE.items() if is_available(entry)]:
+        robot = replace(Robot.load(name), visual=None)
+        plant = MujocoPlant(robot, joints=JointEffects(compensation="gravity"))
+        rest: dict[str, float] = {}
+        thrown: dict[str, float] = {}
+        for joint, label in enumerate(robot.joint_names):
+            lower, upper = float(robot.position_lower[joint]), float(robot.position_upper[joint])
+            if not (np.isfinite(upper - lower) and 0.0 < upper - lower < 1e3):
+                continue
+            limit = float(robot.torque_limit[joint])
+            limit = limit if np.isfinite(limit) else 100.0  # N·m, where the file gives none
+            for side, at in ((-1, lower), (1, upper)):
+                key = f"{label} {'+' if side > 0 else '-'}"
+                rest[key] = float(excess(plant, joint, side * limit, 0.5, at)[-100:].max())
+                thrown[key] = float(excess(plant, joint, side * limit, 1.5, None).max())
+        cells = [max(table.items(), key=lambda item: item[1]) for table in (rest, thrown) if table]
+        print(f"{name:<10} " + " ".join(f"{value:>10.2f} ({key:>10})" for key, value in cells), flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

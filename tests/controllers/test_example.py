@@ -1,0 +1,35 @@
+"""Example 03 runs on any arm of the catalogue, and refuses a robot without the frames in one sentence."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+from pliant.errors import RobotError
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "03_stack_on_your_urdf.py"
+
+
+def main(robot: str) -> None:
+    spec = importlib.util.spec_from_file_location(EXAMPLE.stem, EXAMPLE)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.main(robot)
+
+
+@pytest.mark.parametrize("robot", ["panda", "ur5e"])
+def test_the_tool_follows_its_circle(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
+    main(robot)
+    found = re.search(rf"{robot}: tool RMSE x, y, z = \[(.*)\] mm", capsys.readouterr().out)
+    assert found
+    assert all(float(text) < 6.0 for text in found[1].split(","))  # of a circle of 30 mm
+
+
+def test_a_robot_without_the_frames_is_refused() -> None:
+    with pytest.raises(RobotError, match="robot 'leg3' has no frame 'flange'; valid: "):
+        main("leg3")
