@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pliant.experiments.registry import get_study
+from pliant.experiments.runner import run_case
 from pliant.experiments.verdict import StartNotes, physical_verdict
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Measurement, Reference, TaskReference, Tick, Truth
@@ -60,3 +62,16 @@ def test_a_log_without_truth_says_nothing(iiwa14: Robot) -> None:
         one = tick(0, np.zeros(7), 20.0, 0.0)
         recorder(Tick(one.measurement, one.estimate, one.reference, one.command, None))
     assert physical_verdict(recorder.log(), iiwa14) is None
+
+
+def test_a_study_takes_the_verdict_and_keeps_the_numbers() -> None:
+    """Any study's run goes through it: a leg that has no time to reach the floor has touched nothing."""
+    study = get_study("haptic")
+    config = study.case("floor")
+    short = config.model_copy(
+        update={"duration": 0.05, "steps": (config.steps[0].model_copy(update={"force": (0, 0, 20)}),)}
+    )
+    result = run_case(study, short)
+    assert result.failure is not None
+    assert result.failure.startswith("never touched: frame foot was asked for 20 N")
+    assert result.metrics
