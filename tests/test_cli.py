@@ -98,7 +98,7 @@ def test_a_configuration_file_and_overrides_reach_the_run(tmp_path: Path) -> Non
 
 @pytest.mark.study
 def test_ctrl_c_keeps_what_was_recorded(tmp_path: Path) -> None:
-    command = [*PLIANT, "run", "--set", "duration=600", "--set", "path.kind=hold", "--out", "out"]
+    command = [*PLIANT, "run", "--set", "duration=150", "--set", "path.kind=hold", "--out", "out"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 120.0
     while time.monotonic() < deadline:
