@@ -42,7 +42,7 @@ class Fault(IntEnum):
     STALE = 4
     """a measurement as old as the last one"""
     LATE = 5
-    """a measurement more than 1.5 periods after the last one; the next one is on time again"""
+    """a measurement half a period or more later than it should be; time goes on from it"""
     FROZEN = 6
     """a third equal reading in a row of a sensor that is noisy"""
     ESTIMATE = 7
@@ -89,6 +89,8 @@ class Watched:
     """signal → how many readings in a row were equal to the one before"""
     faults: int = 0
     """ticks in a row with a fault, up to now"""
+    missed: int = 0
+    """ticks since the last sound reading"""
     seen: bool = False
     """whether a reading has passed"""
     last: dict[str, bytes] = field(default_factory=dict[str, bytes])
@@ -140,9 +142,9 @@ class Guard:
             step = reading.time - before.time
             if step <= 0.0:
                 return Fault.STALE if step == 0.0 else Fault.BACKWARD
-            if step > _LATE * self._plant.period and not watched.faults:
+            if step > (watched.missed + _LATE) * self._plant.period:
                 return Fault.LATE
-        watched.seen, watched.reading = True, reading
+        watched.seen, watched.reading, watched.missed = True, reading, 0
         return Fault.FROZEN if frozen else Fault.NONE
 
     def estimate(self, estimate: Estimate, n: int) -> Fault:
@@ -159,7 +161,7 @@ class Guard:
         if not isinstance(reference, Reference):  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own part)
             return Fault.REFERENCE
         for task in reference.tasks:
-            if not _finite((task.position, task.velocity, task.acceleration, task.wrench)):
+            if not (_of_size(3, (task.position,)) and _of_size(6, (task.velocity, task.acceleration, task.wrench))):
                 return Fault.REFERENCE
             if not _finite(part for part in (task.rotation, task.task_rotation) if part is not None):
                 return Fault.REFERENCE
@@ -176,10 +178,11 @@ class Guard:
         """A sound command within the limits, and what was wrong; with Fault.COMMAND it may not be used."""
         if not isinstance(command, Command) or not _of_size(n, (command.torque,)):  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own part)
             return command, Fault.COMMAND
-        within = self._within(command.torque)
+        within, clamped = self._within(command.torque), command.clamped
+        if not _of_size(n, (clamped,)):
+            clamped = np.zeros(n)
         if within is command.torque:
-            return command, Fault.NONE
-        clamped = command.clamped if _of_size(n, (command.clamped,)) else np.zeros(n)
+            return command if clamped is command.clamped else replace(command, clamped=clamped), Fault.NONE
         return replace(command, torque=within, clamped=clamped + command.torque - within), Fault.BEYOND_LIMIT
 
     def settled(self, command: Command, fault: Fault, reading: Measurement, watched: Watched) -> Command:
@@ -203,8 +206,9 @@ class Guard:
             raise RunFailedError(f"{fault.words}; no sound signal came for {1e3 * PATIENCE:g} ms, so the run ended")
         if watched.faults > 1:
             watched.torque = self._gravity_and_damping(watched)
+        watched.missed += 1
         if fault is Fault.LATE:
-            watched.reading = reading  # sound in itself: time goes on from it
+            watched.reading, watched.missed = reading, 0  # sound in itself: time goes on from it
         time = reading.time if math.isfinite(reading.time) else watched.reading.time
         return Command(time, watched.torque, np.zeros(len(watched.torque)), command.diagnostics)
 
@@ -231,7 +235,7 @@ class Guard:
 
     def _measurement_is_broken(self, reading: Measurement) -> bool:
         sound = math.isfinite(reading.time) and _finite((reading.q, reading.v, reading.torque, reading.torque_sent))
-        return not (sound and _finite(reading.wrenches.values()))
+        return not (sound and _of_size(6, reading.wrenches.values()))
 
     def _frozen(self, reading: Measurement, watched: Watched) -> bool:
         """Whether a noisy sensor has given equal readings for too long."""

@@ -1,0 +1,146 @@
+"""The guard's own rules, signal by signal, each beside one that passes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pliant.controllers.step_limit import StepLimit
+from pliant.errors import RunFailedError, ShapeError
+from pliant.guard import Fault, Guard, Watched
+from pliant.interfaces import Controller, Plant
+from pliant.mpc import ForceFeedbackMpc
+from pliant.mpc.plan import Plan, torque_from
+from pliant.robot import Robot
+from pliant.signals import Command, Estimate, Measurement, Reference, TaskReference
+
+PERIOD = 1e-3  # s
+
+
+class Still(Plant[None]):
+    period = PERIOD
+
+    def __init__(self, noisy: frozenset[str] = frozenset()) -> None:
+        self._noisy = noisy
+
+    @property
+    def noisy(self) -> frozenset[str]:
+        return self._noisy
+
+    def init(self) -> tuple[Measurement, None]:
+        return reading(0.0), None
+
+    def step(self, command: Command, world: None) -> tuple[Measurement, None]:
+        return reading(0.0), None
+
+
+def reading(time: float, q: float = 0.1) -> Measurement:
+    return Measurement(time, np.full(3, q), np.zeros(3), np.zeros(3), np.zeros(3), {"foot": np.zeros(6)})
+
+
+def started(noisy: frozenset[str] = frozenset()) -> tuple[Guard, Watched]:
+    guard = Guard(Still(noisy), Robot.load("leg3"))
+    watched = guard.init(reading(0.0))
+    assert guard.measurement(reading(0.0), watched) is Fault.NONE
+    return guard, watched
+
+
+def command(torque: float = 1.0) -> Command:
+    return Command(0.0, np.full(3, torque), np.zeros(3))
+
+
+def all_late(guard: Guard, watched: Watched) -> None:
+    for tick in range(1, 100):
+        late = reading(3.0 * tick * PERIOD)
+        assert guard.measurement(late, watched) is Fault.LATE
+        guard.settled(command(), Fault.LATE, late, watched)
+
+
+def test_readings_that_are_late_again_and_again_end_the_run() -> None:
+    guard, watched = started()
+    with pytest.raises(RunFailedError, match="measurements came late"):
+        all_late(guard, watched)
+
+
+def test_a_reading_after_a_fault_is_on_time_if_no_more_was_lost() -> None:
+    guard, watched = started()
+    bad = replace(reading(PERIOD), q=np.full(3, np.nan))
+    assert guard.measurement(bad, watched) is Fault.NOT_FINITE
+    guard.settled(command(), Fault.NOT_FINITE, bad, watched)
+    assert guard.measurement(reading(10.0), watched) is Fault.LATE
+    guard, watched = started()
+    guard.settled(command(), Fault.NOT_FINITE, bad, watched)
+    assert guard.measurement(reading(2.0 * PERIOD), watched) is Fault.NONE
+
+
+def test_a_noisy_sensor_that_stands_still_is_frozen_at_its_third_equal_reading() -> None:
+    guard, watched = started(frozenset({"q"}))
+    faults = [guard.measurement(reading(tick * PERIOD), watched) for tick in (1, 2, 3)]
+    assert faults == [Fault.NONE, Fault.FROZEN, Fault.FROZEN]
+    assert guard.measurement(reading(4 * PERIOD, q=0.2), watched) is Fault.NONE
+    guard, watched = started()  # the control: a perfect sensor may stand still
+    assert [guard.measurement(reading(tick * PERIOD), watched) for tick in (1, 2, 3)] == [Fault.NONE] * 3
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"position": np.zeros(2)},
+        {"wrench": np.zeros(3)},
+        {"velocity": np.full(6, np.inf)},
+        {"rotation": np.full((3, 3), np.nan)},
+    ],
+)
+def test_a_reference_of_another_size_or_not_finite_is_found(changed: dict[str, np.ndarray]) -> None:
+    guard, _ = started()
+    task = TaskReference("foot", np.zeros(3), np.eye(3))
+    assert guard.reference(Reference(0.0, (task,))) is Fault.NONE
+    assert guard.reference(Reference(0.0, (replace(task, **changed),))) is Fault.REFERENCE
+
+
+def test_a_wrench_of_another_size_is_found() -> None:
+    guard, watched = started()
+    bad = replace(reading(PERIOD), wrenches={"foot": np.zeros(5)})
+    assert guard.measurement(bad, watched) is Fault.NOT_FINITE
+    with pytest.raises(ShapeError, match="q must have shape"):
+        guard.init(replace(reading(0.0), q=np.zeros(4)))
+
+
+def test_what_was_clamped_is_finite_too() -> None:
+    guard, _ = started()
+    sent, fault = guard.command(replace(command(), clamped=np.full(3, np.nan)), 3)
+    assert fault is Fault.NONE
+    assert np.isfinite(sent.clamped).all()
+    sent, fault = guard.command(command(1e6), 3)
+    assert fault is Fault.BEYOND_LIMIT
+    np.testing.assert_allclose(sent.torque + sent.clamped, 1e6)
+
+
+class Steady(Controller[None]):
+    def init(self, estimate: Estimate) -> None:
+        return None
+
+    def step(self, estimate: Estimate, reference: Reference, state: None) -> tuple[Command, None]:
+        return command(), None
+
+
+@pytest.mark.parametrize("sent", [np.nan, np.inf, 1e6, -1e6])
+def test_a_step_limit_does_not_believe_what_is_said_to_have_been_sent(sent: float) -> None:
+    robot = Robot.load("leg3")
+    limited = StepLimit(Steady(), robot, 0.1)
+    estimate = Estimate(0.0, np.zeros(3), np.zeros(3), np.zeros(3), np.full(3, sent))
+    state = limited.init(estimate)
+    for _ in range(3):
+        answer, state = limited.step(estimate, Reference(0.0), state)
+        assert np.isfinite(answer.torque).all()
+        assert (np.abs(answer.torque) <= robot.torque_limit).all()
+
+
+def test_a_plan_has_no_torque_for_a_time_before_it() -> None:
+    plan = Plan(1.0, np.zeros(6), np.arange(15.0).reshape(5, 3), np.zeros((3, 6)))
+    config = ForceFeedbackMpc()
+    assert torque_from(plan, 1.0, None, config) is not None
+    for back in (0.004, 0.3):
+        assert torque_from(plan, 1.0 - back, None, config) is None
