@@ -103,7 +103,8 @@ def _measured(
         return Result(config, (), failure, wired.warnings, path)
     drawn = study.figures(config, wired, log, folder) if folder is not None and figures else []
     measured = study.metrics(config, log)
-    failure = physical_verdict(log, wired.robot) or study.verdict(config, measured)
+    verdicts = (study.verdict(config, measured), physical_verdict(log, wired.robot))
+    failure = "; ".join(verdict for verdict in verdicts if verdict) or None
     return Result(config, measured, failure, wired.warnings, path, tuple(drawn))
 
 
