@@ -55,17 +55,18 @@ def run(
         was sent a sound torque last, and everything observed until then is kept.
 
     Raises:
-        ShapeError: the first measurement does not fit the robot.
+        ConfigError, ShapeError, RobotError: parts that do not fit together, in the first tick. What an observer raises
+            passes through.
     """
     guard = Guard(plant, robot)
     measurement, world = plant.init()
-    est = ref = ctl = estimate = reference = command = None
+    est = ref = ctl = estimate = reference = command = watched = None
     ticks = 0
-    try:
-        watched = guard.init(measurement)
-        for _ in clock:
-            start = planned = time.perf_counter()
-            fresh = command is None  # the first tick: every part starts
+    for _ in clock:
+        start = planned = time.perf_counter()
+        fresh = command is None  # the first tick: every part starts
+        try:
+            watched = watched or guard.init(measurement)
             fault = guard.measurement(measurement, watched)
             if not fault:
                 est = estimator.init(measurement) if fresh else est
@@ -88,14 +89,17 @@ def run(
             command = guard.settled(command, fault, measurement, watched)
             wall = {"plan": planned - start, "control": time.perf_counter() - planned}
             tick = Tick(measurement, estimate, reference, command, plant.truth(world), wall, int(fault))
-            for observe in observers:
-                observe(tick)
+        except Exception as error:  # whatever a part raises: the run ends in order
+            if command is None and isinstance(error, ConfigError | ShapeError | RobotError):
+                raise  # parts that do not fit together: nothing has run
+            return _ended(ticks, measurement, error)
+        for observe in observers:
+            observe(tick)  # an observer's error is its own: a full disk is not the robot's failure
+        try:
             measurement, world = plant.step(command, world)
-            ticks += 1
-    except Exception as error:  # whatever a part raises: the run ends in order
-        if command is None and isinstance(error, ConfigError | ShapeError | RobotError):
-            raise  # parts that do not fit together: nothing has run
-        return _ended(ticks, measurement, error)
+        except Exception as error:
+            return _ended(ticks, measurement, error)
+        ticks += 1
     return Outcome(ticks, measurement.time)
 
 
