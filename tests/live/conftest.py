@@ -30,8 +30,11 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 _FLAGS = [
     "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    "--disable-backgrounding-occluded-windows", "--disable-renderer-backgrounding",
+    "--disable-background-timer-throttling",
 ]  # fmt: skip
-PATIENCE = 90.0  # s: other work may share the machine
+_FEW_PIXELS = 0.35  # a unit of length of the page: the processor draws here
+PATIENCE = 180.0  # s: other work may share the machine
 
 
 def until(holds: Callable[[], object], what: str, seconds: float = PATIENCE) -> None:
@@ -40,6 +43,11 @@ def until(holds: Callable[[], object], what: str, seconds: float = PATIENCE) -> 
     while not holds():
         assert time.monotonic() < end, f"{what} did not happen within {seconds:g} s"
         time.sleep(0.02)
+
+
+def pixels() -> float:
+    """Pixels a length unit of the page: all of them where pictures are asked for."""
+    return 1.0 if os.environ.get("PLIANT_SCREENSHOTS") else _FEW_PIXELS
 
 
 @pytest.fixture(scope="session")
@@ -110,7 +118,7 @@ def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         page.run.start("stack", wall_case())
         thread = threading.Thread(target=page.serve)
         thread.start()
-        tab = browser.new_page(viewport={"width": 1280, "height": 800})
+        tab = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=pixels())
         tab.set_default_timeout(1e3 * PATIENCE)
         made = Live(server, page, tab, folder)
         tab.on("pageerror", lambda error: made.complaints.append(str(error)))

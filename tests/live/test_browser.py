@@ -11,7 +11,7 @@ import pytest
 from pliant.live.page.replay import LoggedScene, ReplayPage
 from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
-from tests.live.conftest import PATIENCE, Live, until
+from tests.live.conftest import PATIENCE, Live, pixels, until
 
 
 def drag(live: Live, label: str, share: float) -> None:
@@ -167,18 +167,23 @@ def test_a_log_on_the_page_with_a_time_slider(live: Live) -> None:
 
 def test_a_second_browser_watches_takes_over_and_vanishes(live: Live) -> None:
     """Watching changes nothing; steering works once taken over; a tab that is closed in the middle of a recording
-    leaves run and log whole."""
+    leaves run and log whole.
+
+    Events, not the mouse: it waits for a picture that stands still, while one processor draws two pages.
+    """
     before = set(live.folder.glob("*.mcap"))
-    other = live.tab.context.browser.new_page(viewport={"width": 820, "height": 600})  # type: ignore[union-attr]
+    other = live.tab.context.browser.new_page(  # type: ignore[union-attr]
+        viewport={"width": 820, "height": 600}, device_scale_factor=pixels()
+    )
     other.set_default_timeout(1e3 * PATIENCE)
     other.goto(live.server.url)
     until(lambda: live.page.seat.watchers() == 1, "somebody who watches")
     ticks = live.page.run.ticks
-    other.get_by_role("button", name="Pause").click()
+    other.get_by_role("button", name="Pause").dispatch_event("click")
     other.get_by_text("You are watching").first.wait_for()
     until(lambda: live.page.run.ticks > ticks + 200, "the loop going on")
-    other.get_by_role("button", name="Steer from this browser").click()
-    other.get_by_role("button", name="Record").click()
+    other.get_by_role("button", name="Steer from this browser").dispatch_event("click")
+    other.get_by_role("button", name="Record").dispatch_event("click")
     other.get_by_role("button", name="Stop recording").wait_for()
     other.close()
     until(lambda: live.page.seat.watchers() == 0, "the browser's end")

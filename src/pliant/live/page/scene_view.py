@@ -50,6 +50,7 @@ class SceneView:
         self._cone_friction = -1.0
         self._scene.set_up_direction("+z")
         self._scene.world_axes.visible = False
+        self._scene.configure_default_lights(cast_shadow=False)  # three more pictures a frame, which show no force
         self._scene.add_grid("/grid", 4.0, 4.0, cell_size=0.1, section_size=0.5, **_GRID)
         self._arrows = {
             name: self._scene.add_arrows(f"/{name}", _NOWHERE, colour, **_ARROW, visible=False)
