@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -62,6 +63,19 @@ def test_locked_joints_tools_and_legs_agree() -> None:
         robots.append(one_leg_of_anymal())
     for robot in robots:
         assert disagreement(robot, spec_from_robot(robot).compile(), rng) < TOLERANCE
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_rods_and_point_masses_agree(leg3: Robot, seed: int) -> None:
+    """Bodies whose smaller principal moments add up to the third but for rounding, turned at random."""
+    rng = np.random.default_rng(seed)
+    model = leg3.model.copy()
+    for index in range(1, model.njoints):
+        moments = np.diag([0.0, *[rng.uniform(0.01, 0.1)] * 2]) if index % 2 else np.diag([0.01, 0.02, 0.03])
+        R = np.array(pin.exp3(rng.uniform(-2.0, 2.0, 3)))
+        model.inertias[index] = pin.Inertia(1.0, rng.uniform(-0.1, 0.1, 3), R @ moments @ R.T)
+    robot = replace(leg3, model=model)
+    assert disagreement(robot, spec_from_robot(robot).compile(), rng) < TOLERANCE
 
 
 def test_a_wrong_inertia_would_be_noticed(lwr4: Robot) -> None:

@@ -90,6 +90,8 @@ def _set_inertia(body: mujoco.MjsBody, inertia: pin.Inertia) -> None:
         vectors[:, 0] *= -1.0
     if values[0] + values[1] < values[2] * (1.0 - 1e-6) - 1e-12:  # not the rounding of a rod or a point
         values[:] = values.mean()  # no body has these; MuJoCo refuses them. The plant refuses such a robot by name
+    elif values[0] + values[1] < values[2]:
+        values[0] = values[2] * (1.0 + 1e-15) - values[1]  # a rod or point masses, off by rounding only
     body.explicitinertial = True
     body.mass = max(inertia.mass, _LEAST)
     body.ipos = inertia.lever

@@ -14,7 +14,8 @@ import numpy as np
 
 from pliant.errors import RobotError
 from pliant.robots.description import Description, require_movement
-from pliant.robots.mjcf_checks import check_couplings, check_joints, notes_on_forces, refuse_unread
+from pliant.robots.mjcf_checks import check_finite, check_joints, notes_on_forces, notes_on_units, refuse_unread
+from pliant.robots.mjcf_couplings import check_couplings
 from pliant.robots.mjcf_limits import torque_limits
 from pliant.robots.mjcf_tree import Tree, build_tree, joint_name
 from pliant.robots.mjcf_visual import visual_of
@@ -46,16 +47,19 @@ def read_mjcf(path: Path, locked: Collection[str]) -> Description:
         visual=visual_of(compiled, tree),
         homes=_keyframes(compiled, tree),
         welded=frozenset(joint_name(compiled, i) for i in range(compiled.njnt) if i not in tree.joints),
-        notes=(*tree.notes, *about_limits, *notes_on_forces(compiled, tree)),
+        notes=(*tree.notes, *about_limits, *notes_on_forces(compiled, tree), *notes_on_units(compiled, tree)),
     )
 
 
 def _compile(path: Path) -> mujoco.MjModel:
     try:
-        return mujoco.MjSpec.from_file(str(path)).compile()
-    except (ValueError, RuntimeError) as error:
+        compiled = mujoco.MjSpec.from_file(str(path)).compile()
+    except (ValueError, RuntimeError, mujoco.FatalError, mujoco.UnexpectedError) as error:
         reason = " ".join(str(error).split())
-        raise RobotError(f"{path} could not be read as an MJCF: MuJoCo says «{reason}»") from error
+        remedy = "; put the file where the MJCF looks for it" if "opening file" in reason else ""
+        raise RobotError(f"{path} could not be read as an MJCF: MuJoCo says «{reason}»{remedy}") from error
+    check_finite(compiled, path)
+    return compiled
 
 
 def _keyframes(compiled: mujoco.MjModel, tree: Tree) -> dict[str, Array]:

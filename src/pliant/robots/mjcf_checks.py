@@ -10,7 +10,10 @@ import numpy as np
 
 from pliant.errors import RobotError
 from pliant.robots.mjcf_tree import Tree, joint_name
+from pliant.robots.urdf_numbers import LONGEST, WIDEST
 
+_NARROWEST = 0.07
+"""rad, 4°: a range below that was most likely written in rad and read in degrees"""
 _KINDS = {int(mujoco.mjtJoint.mjJNT_BALL): "a ball joint", int(mujoco.mjtJoint.mjJNT_FREE): "a free joint"}
 
 
@@ -25,33 +28,23 @@ def check_joints(compiled: mujoco.MjModel, path: Path, locked: Collection[str]) 
             )
 
 
-def check_couplings(compiled: mujoco.MjModel, path: Path, locked: Collection[str]) -> None:
-    """Raises RobotError for an equality that binds joints or bodies which move."""
-    for index in range(compiled.neq):
-        if not compiled.eq_active0[index]:
-            continue
-        kind, one, other = (int(a[index]) for a in (compiled.eq_type, compiled.eq_obj1id, compiled.eq_obj2id))
-        if kind == int(mujoco.mjtEq.mjEQ_JOINT):
-            _check_joint_coupling(compiled, path, locked, one, other)
-        else:
-            name = compiled.equality(index).name or f"number {index + 1}"
-            what = mujoco.mjtEq(kind).name.removeprefix("mjEQ_").lower()
-            raise RobotError(
-                f"{path}: equality {name!r} ({what}) closes a loop or ties bodies together, which a tree of joints"
-                " cannot represent; remove it, or set active='false' and lock the joints that it moves"
-            )
-
-
-def _check_joint_coupling(compiled: mujoco.MjModel, path: Path, locked: Collection[str], one: int, other: int) -> None:
-    follower = joint_name(compiled, one)
-    master = joint_name(compiled, other) if other >= 0 else None
-    if follower in locked:
-        return
-    told = f"follows joint {master!r}" if master is not None else "is held at a fixed position"
-    raise RobotError(
-        f"{path}: joint {follower!r} {told} (an equality of the file), and coupled joints are not simulated; lock it:"
-        f" locked={{{follower!r}: 0.0}}"
-    )
+def check_finite(compiled: mujoco.MjModel, path: Path) -> None:
+    """Raises RobotError for a number that is none: MuJoCo compiles them."""
+    for what, values in (
+        ("gravity", compiled.opt.gravity),
+        ("the place of a body", compiled.body_pos),
+        ("the direction of a body", compiled.body_quat),
+        ("the centre of mass of a body", compiled.body_ipos),
+        ("the mass of a body", compiled.body_mass),
+        ("the inertia of a body", compiled.body_inertia),
+        ("the place of a joint", compiled.jnt_pos),
+        ("the range of a joint", compiled.jnt_range),
+        ("the zero of a joint (ref)", compiled.qpos0),
+        ("the place of a site", compiled.site_pos),
+        ("a keyframe", compiled.key_qpos),
+    ):
+        if not np.isfinite(values).all():
+            raise RobotError(f"{path}: {what} is not a finite number; look for nan and inf in the file")
 
 
 def refuse_unread(compiled: mujoco.MjModel, path: Path) -> None:
@@ -61,6 +54,33 @@ def refuse_unread(compiled: mujoco.MjModel, path: Path) -> None:
     tied = [compiled.tendon(t).name or f"number {t + 1}" for t in np.flatnonzero(compiled.tendon_armature)]
     if tied:
         raise RobotError(f"{path}: tendon {tied[0]!r} has armature, which couples joints' inertia; remove it")
+
+
+def notes_on_units(compiled: mujoco.MjModel, tree: Tree) -> list[str]:
+    """Ranges and lengths that look like those of another unit; MuJoCo takes them as they are."""
+    notes: list[str] = []
+    wide, narrow = list[str](), list[str]()
+    for joint, index in tree.joints.items():
+        if int(compiled.jnt_type[joint]) != int(mujoco.mjtJoint.mjJNT_HINGE) or not compiled.jnt_limited[joint]:
+            continue
+        size = float(np.abs(compiled.jnt_range[joint]).max())
+        (wide if size > WIDEST else narrow if size < _NARROWEST else list[str]()).append(tree.model.names[index])
+    if wide:
+        notes.append(
+            f"the range of {', '.join(wide)} is more than four turns; angles in degrees need <compiler angle='degree'>"
+        )
+    if narrow:
+        notes.append(
+            f"the range of {', '.join(narrow)} is narrower than ±4°; angles in rad need <compiler angle='radian'>"
+        )
+    far = [compiled.body(b).name or f"body{b}" for b in range(1, compiled.nbody) if _far(compiled, b)]
+    if far:
+        notes.append(f"{far[0]!r} lies more than {LONGEST:g} m from its parent; lengths are in metres")
+    return notes
+
+
+def _far(compiled: mujoco.MjModel, body: int) -> bool:
+    return compiled.body_parentid[body] > 0 and bool(np.linalg.norm(compiled.body_pos[body]) > LONGEST)
 
 
 def notes_on_forces(compiled: mujoco.MjModel, tree: Tree) -> list[str]:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from pliant.robots.mjcf_tree import Tree, joint_name
+from pliant.robots.mjcf_tree import Tree, actuators_of, joint_name
 from pliant.spatial import Array
-
-_AT_JOINT = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
 
 
 def torque_limits(compiled: mujoco.MjModel, tree: Tree) -> tuple[Array, list[str]]:
@@ -21,8 +19,8 @@ def torque_limits(compiled: mujoco.MjModel, tree: Tree) -> tuple[Array, list[str
     lopsided, servos = list[str](), list[str]()
     for joint, index in tree.joints.items():
         name, dof = joint_name(compiled, joint), tree.model.joints[index].idx_v
-        ranges = [_force_range(compiled, a) for a in _actuators_of(compiled, joint)]
-        servos += [name for a in _actuators_of(compiled, joint) if not _is_motor(compiled, a)]
+        ranges = [_force_range(compiled, a) for a in actuators_of(compiled, joint)]
+        servos += [name for a in actuators_of(compiled, joint) if not _is_motor(compiled, a)]
         total = np.sum(ranges, axis=0) if ranges else np.array([-np.inf, np.inf])
         if compiled.jnt_actfrclimited[joint]:
             low, high = compiled.jnt_actfrcrange[joint]
@@ -41,14 +39,6 @@ def torque_limits(compiled: mujoco.MjModel, tree: Tree) -> tuple[Array, list[str
     if free:
         notes.append(f"no torque limit in the file for {', '.join(free)}: nothing is clamped there")
     return limits, notes
-
-
-def _actuators_of(compiled: mujoco.MjModel, joint: int) -> list[int]:
-    return [
-        a
-        for a in range(compiled.nu)
-        if int(compiled.actuator_trntype[a]) in _AT_JOINT and int(compiled.actuator_trnid[a][0]) == joint
-    ]
 
 
 def _is_motor(compiled: mujoco.MjModel, actuator: int) -> bool:

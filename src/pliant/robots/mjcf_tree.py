@@ -18,6 +18,7 @@ from pliant.robots.description import free_name, set_limits
 from pliant.spatial import Array
 
 _HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
+_AT_JOINT = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
 _SINGLE = (_HINGE, int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 
@@ -42,11 +43,21 @@ def joint_name(compiled: mujoco.MjModel, joint: int) -> str:
     return name or free_name(f"joint{joint + 1}", {compiled.joint(i).name for i in range(compiled.njnt)})
 
 
+def actuators_of(compiled: mujoco.MjModel, joint: int) -> list[int]:
+    """Actuators that act on a joint itself."""
+    return [
+        a
+        for a in range(compiled.nu)
+        if int(compiled.actuator_trntype[a]) in _AT_JOINT and int(compiled.actuator_trnid[a][0]) == joint
+    ]
+
+
 def build_tree(compiled: mujoco.MjModel, locked: Collection[str]) -> Tree:
     """The model with every hinge and slide; locked ball and free joints are left out, their bodies stay in place."""
     tree = Tree(pin.Model())
     tree.model.name = str(compiled.names.split(b"\x00")[0].decode("utf-8", "replace")) or "robot"
-    tree.model.gravity = pin.Motion(np.array(compiled.opt.gravity), np.zeros(3))
+    off = bool(compiled.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY))
+    tree.model.gravity = pin.Motion(np.zeros(3) if off else np.array(compiled.opt.gravity), np.zeros(3))
     tree.bodies.append((0, pin.SE3.Identity()))
     tree.frames[0] = 0
     tree.names.update({"universe", *(joint_name(compiled, i) for i in range(compiled.njnt))})
@@ -97,12 +108,20 @@ def _add_joint(tree: Tree, compiled: mujoco.MjModel, index: int, parent: int, at
     back = pin.SE3(pin.exp3(-zero * axis), np.zeros(3)) if hinge else pin.SE3(np.eye(3), -zero * axis)
     dof = model.joints[joint].idx_v
     armature = np.array(model.armature)
-    armature[dof] = compiled.dof_armature[compiled.jnt_dofadr[index]]
+    armature[dof] = compiled.dof_armature[compiled.jnt_dofadr[index]] + _motor_inertia(compiled, index)
     model.armature = armature
     limited = bool(compiled.jnt_limited[index])
     lower, upper = compiled.jnt_range[index] if limited else (-np.inf, np.inf)
     set_limits(model, model.joints[joint].idx_q, float(lower), float(upper))
     return joint, back * anchor.inverse()
+
+
+def _motor_inertia(compiled: mujoco.MjModel, joint: int) -> float:
+    """Inertia of the motors at a joint as it feels it, gear² · armature, kg m²."""
+    return sum(
+        float(compiled.actuator_gear[a][0]) ** 2 * float(compiled.actuator_armature[a])
+        for a in actuators_of(compiled, joint)
+    )
 
 
 def _add_site(tree: Tree, compiled: mujoco.MjModel, site: int) -> None:

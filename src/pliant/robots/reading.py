@@ -29,7 +29,10 @@ def read_description(path: Path, locked: Collection[str]) -> Description:
         RobotError: the file cannot be read, is neither of the two, or describes no robot that can be represented.
     """
     root = _parse(path)
-    tag = root.tag.rsplit("}", 1)[-1]  # without a namespace
+    tag = root.tag.rsplit("}", 1)[-1]
+    namespace = root.tag.removesuffix(tag)
+    for element in root.iter():
+        element.tag = element.tag.removeprefix(namespace)
     if tag == "robot":
         return read_urdf(path, root, locked)
     if tag == "mujoco":

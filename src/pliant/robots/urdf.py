@@ -31,7 +31,7 @@ def read_urdf(path: Path, root: ElementTree.Element, locked: Collection[str]) ->
         RobotError: the file contradicts itself or holds something that is not supported; the sentence names it.
     """
     check_tree(root, path, locked)
-    notes = check_numbers(root, path)
+    notes = check_numbers(root, path, locked)
     repairs = repair(root, path, locked)
     text = ElementTree.tostring(root, encoding="unicode")
     with _captured() as said:
@@ -41,10 +41,11 @@ def read_urdf(path: Path, root: ElementTree.Element, locked: Collection[str]) ->
             reason = said() or str(error).strip().splitlines()[-1]
             raise RobotError(f"{path} could not be read as a URDF: the parser says «{reason}»") from error
         visual = _visual(model, text, path)
+    drawn = [] if visual is not None else ["the shapes could not be read: it is drawn as a stick figure"]
     require_movement(model, path)
     for name, (lower, upper) in repairs.limits.items():
         set_limits(model, model.joints[model.getJointId(name)].idx_q, lower, upper)
-    return Description(model, visual, welded=frozenset(repairs.welded), notes=(*notes, *repairs.notes))
+    return Description(model, visual, welded=frozenset(repairs.welded), notes=(*notes, *repairs.notes, *drawn))
 
 
 def _visual(model: pin.Model, text: str, path: Path) -> pin.GeometryModel | None:

@@ -47,7 +47,8 @@ def _check_template(root: Element, path: Path) -> None:
 def _check_joint(joint: Element, path: Path, links: list[str], locked: Collection[str]) -> None:
     name, kind = str(joint.get("name")), joint.get("type")
     if kind not in _KNOWN:
-        raise RobotError(f"{path}: joint {name!r} is of type {kind!r}; {options(_KNOWN, kind)}")
+        told = "has no type" if kind is None else f"is of type {kind!r}"
+        raise RobotError(f"{path}: joint {name!r} {told}; {options(_KNOWN, kind)}")
     for end in ("parent", "child"):
         element = joint.find(end)
         link = None if element is None else element.get("link")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
@@ -11,16 +11,20 @@ import numpy as np
 
 from pliant.errors import RobotError
 
-_LONGEST = 20.0
+LONGEST = 20.0
 """m from one joint to the next; beyond that the file is in millimetres"""
-_WIDEST = 8.0 * math.pi
+WIDEST = 8.0 * math.pi
 """rad: a joint limit beyond four turns is in degrees"""
+_TURN = 2.0 * math.pi + 0.01
+"""rad: a joint that is placed beyond that was most likely turned in degrees"""
 _NEGATIVE = 1e-6
 """kg m²: below that a negative moment of inertia is rounding"""
 _VECTORS = {"xyz": 3, "rpy": 3}
+_SIZES = {"box": {"size": 3}, "cylinder": {"radius": 1, "length": 1}, "sphere": {"radius": 1}}
+_SIZES["capsule"] = _SIZES["cylinder"]
 
 
-def check_numbers(root: Element, path: Path) -> list[str]:
+def check_numbers(root: Element, path: Path, locked: Collection[str]) -> list[str]:
     """What there is to say about a URDF's numbers. Raises RobotError for one that makes no sense."""
     notes: list[str] = []
     for link in root.findall("link"):
@@ -33,10 +37,12 @@ def check_numbers(root: Element, path: Path) -> list[str]:
         where = f"{path}: joint {joint.get('name')!r}"
         for element in joint.iter():
             _check_vectors(element, where)
-        _check_place(joint, where)
+        notes += _check_place(joint, where)
         if joint.get("type") in ("revolute", "continuous", "prismatic"):
             _check_axis(joint, where)
-            _check_limit(joint, where)
+            lower, upper = _check_limit(joint, where)
+            if lower == upper != 0.0 and joint.get("type") != "continuous" and joint.get("name") not in locked:
+                raise RobotError(f"{where} cannot move: its limits are both {lower:g}; make it fixed, or widen them")
     return notes
 
 
@@ -47,7 +53,7 @@ def _numbers(text: str, count: int, where: str, what: str) -> Sequence[float]:
         values = []
     if len(values) != count or not np.isfinite(values).all():
         comma = "; decimals need a point, not a comma" if "," in text else ""
-        wanted = "a number" if count == 1 else f"{count} numbers"
+        wanted = "a finite number" if count == 1 else f"{count} finite numbers"
         raise RobotError(f"{where} has {what}={text!r}, which must be {wanted}{comma}")
     return values
 
@@ -84,47 +90,60 @@ def _drop_flat_shapes(link: Element) -> list[str]:
     notes: list[str] = []
     for kind in ("visual", "collision"):
         for shape in link.findall(kind):
-            solid = next((e for e in shape.iter() if e.tag in ("box", "cylinder", "sphere", "capsule")), None)
+            solid = next((e for e in shape.iter() if e.tag in _SIZES), None)
             if solid is None:
                 continue
-            sizes = [s for key in ("size", "radius", "length") for s in solid.get(key, "").split()]
-            try:
-                flat = not all(float(size) > 0.0 for size in sizes)
-            except ValueError:
-                flat = True
-            if flat:
+            wanted = _SIZES[solid.tag]
+            if not all(_is_solid(solid.get(key, "").split(), count) for key, count in wanted.items()):
+                told = ", ".join(f"{key} {solid.get(key, 'missing')!r}" for key in wanted)
                 link.remove(shape)
                 notes.append(
-                    f"link {link.get('name')!r}: a {solid.tag} with size {' '.join(sizes)} is not drawn; sizes must be"
-                    " above zero"
+                    f"link {link.get('name')!r}: a {solid.tag} with {told} is not drawn; sizes must be above zero"
                 )
     return notes
 
 
-def _check_place(joint: Element, where: str) -> None:
+def _is_solid(sizes: Sequence[str], count: int) -> bool:
+    try:
+        return len(sizes) == count and all(float(size) > 0.0 for size in sizes)
+    except ValueError:
+        return False
+
+
+def _check_place(joint: Element, where: str) -> list[str]:
     origin = joint.find("origin")
-    xyz = [float(x) for x in (origin.get("xyz", "0 0 0") if origin is not None else "0 0 0").split()]
-    if np.linalg.norm(xyz) > _LONGEST:
+    xyz, rpy = (
+        np.array([float(x) for x in (origin.get(key, "0 0 0") if origin is not None else "0 0 0").split()])
+        for key in ("xyz", "rpy")
+    )
+    if np.linalg.norm(xyz) > LONGEST:
         raise RobotError(
             f"{where} lies {np.linalg.norm(xyz):.0f} m from the joint before it; lengths are in metres: divide by 1000"
             " if the file is in millimetres"
         )
+    if np.abs(rpy).max() > _TURN:
+        told = " ".join(f"{x:g}" for x in rpy)
+        return [f"joint {joint.get('name')!r} is placed with rpy {told}, more than a turn; angles are in radians"]
+    return []
 
 
 def _check_axis(joint: Element, where: str) -> None:
     axis = joint.find("axis")
     if axis is None:
         return
-    if np.linalg.norm(_numbers(axis.get("xyz", "1 0 0"), 3, where, "axis xyz")) < 1e-9:
+    if axis.get("xyz") is None:
+        raise RobotError(f'{where} has an <axis> without xyz; give the direction that it moves along: xyz="0 0 1"')
+    if np.linalg.norm(_numbers(axis.get("xyz", ""), 3, where, "axis xyz")) < 1e-9:
         raise RobotError(f"{where} has the axis 0 0 0; give the direction that it moves along, for example 0 0 1")
 
 
-def _check_limit(joint: Element, where: str) -> None:
+def _check_limit(joint: Element, where: str) -> tuple[float, float]:
+    """Lower and upper limit; 0 and 0 where there are none."""
     limit = joint.find("limit")
     kind = joint.get("type")
     if limit is None:
         if kind == "continuous":
-            return
+            return 0.0, 0.0
         raise RobotError(f"{where} is {kind} and has no <limit>; add lower, upper, effort and velocity")
     for key, unit in (("effort", "N·m"), ("velocity", "rad/s")):
         if limit.get(key) is None:
@@ -136,8 +155,9 @@ def _check_limit(joint: Element, where: str) -> None:
     lower, upper = (_numbers(limit.get(key, "0"), 1, where, f"limit {key}")[0] for key in ("lower", "upper"))
     if kind != "continuous" and lower > upper:
         raise RobotError(f"{where} has its limits swapped: lower={lower:g} is above upper={upper:g}")
-    if kind == "revolute" and max(abs(lower), abs(upper)) > _WIDEST and upper - lower < 1e3:
+    if kind == "revolute" and max(abs(lower), abs(upper)) > WIDEST and upper - lower < 1e3:
         raise RobotError(
             f"{where} has limits from {lower:g} to {upper:g} rad, more than four turns; angles are in radians: multiply"
             f" by π/180 if the file is in degrees, or make the joint continuous"
         )
+    return lower, upper

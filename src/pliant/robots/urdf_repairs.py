@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
-from pliant.robots.description import free_name
+from pliant.robots.description import UNLIMITED, free_name
 
 _FAR = "1e9"
 _MOVING = ("revolute", "continuous", "prismatic")
@@ -69,7 +69,9 @@ def _repair_joint(joint: Element, locked: Collection[str], done: Repairs) -> Non
             done.notes.append(f"joint {name!r} is continuous: it turns without limits")
     elif kind in ("revolute", "prismatic") and limit is not None and name not in locked:
         lower, upper = float(limit.get("lower", "0")), float(limit.get("upper", "0"))
-        if lower == upper == 0.0:
+        if upper - lower > UNLIMITED:
+            done.limits[name] = (-float("inf"), float("inf"))
+        elif lower == upper == 0.0:
             done.limits[name] = (-float("inf"), float("inf"))
             done.notes.append(f"joint {name!r} has the limits 0 and 0: taken as unlimited")
         elif not lower <= 0.0 <= upper:

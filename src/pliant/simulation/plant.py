@@ -174,6 +174,8 @@ class MujocoPlant(Plant[World]):
         speed = np.abs(world.data.qvel[: self.robot.n])
         if (speed <= self._fastest).all():
             return
+        if not np.isfinite(speed).all():
+            raise RunFailedError("the simulation diverged: a joint's speed is not a number; use a smaller physics step")
         joint = int(np.argmax(speed / self._fastest))
         raise RunFailedError(
             f"joint {self.robot.joint_names[joint]} ran at {speed[joint]:.1f} rad/s; the robot stops at"
