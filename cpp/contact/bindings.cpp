@@ -57,12 +57,13 @@ class ContactLoop {
     views_.nv = nb::cast<int>(model_.attr("nv"));
   }
 
-  std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material) {
+  std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material, bool hollow) {
     if (geom_a < 0 || geom_b < 0 || geom_a >= views_.ngeom || geom_b >= views_.ngeom)
       throw std::invalid_argument("a contact pair names a geom that the model does not have");
     require_size(material.size(), 8, "material");
     const double* m = material.data();
-    const int first = world_.add_pair(views_, geom_a, geom_b, {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]});
+    const Material made{m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]};
+    const int first = world_.add_pair(views_, geom_a, geom_b, made, hollow);
     if (first < 0) throw std::invalid_argument("no contact law for this pair of shapes in this order");
     return {first, world_.slots() - first};
   }
@@ -110,7 +111,7 @@ NB_MODULE(_contact, m) {
   m.attr("BRISTLE_SIZE") = kBristleSize;
   nb::class_<ContactLoop>(m, "ContactLoop")
       .def(nb::init<nb::object, nb::object, uintptr_t, uintptr_t>(), "model"_a, "data"_a, "step1"_a, "step2"_a)
-      .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a)
+      .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a, "hollow"_a = false)
       .def_prop_ro("slots", &ContactLoop::slots)
       .def("evaluate", &ContactLoop::evaluate, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
            "point"_a.noconvert(), "penetration"_a.noconvert())

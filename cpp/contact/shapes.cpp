@@ -9,6 +9,9 @@ namespace {
 constexpr int kCorners = 8;
 constexpr double kTiny = 1e-12;
 
+// The part of a vector that is perpendicular to a unit axis.
+Vec3 across(const Vec3& v, const Vec3& axis) { return v - dot(v, axis) * axis; }
+
 struct Ball {  // what A presents to B: a centre and a radius (zero for a box corner)
   Vec3 centre;
   double radius;
@@ -20,12 +23,21 @@ Touch against_plane(const Ball& ball, const Shape& plane) {
   return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
 }
 
-Touch against_sphere(const Ball& ball, const Shape& sphere) {
-  const Vec3 apart = ball.centre - sphere.position;
-  const double distance = norm(apart);
-  const Vec3 normal = distance > kTiny ? (1.0 / distance) * apart : Vec3{0.0, 0.0, 1.0};
-  const double gap = distance - ball.radius - sphere.size.x;
+// A sphere about its centre, or a cylinder about its axis, from outside or from within. Args: apart: from the centre or the
+// axis to the ball.
+Touch against_round(const Ball& ball, const Shape& b, const Vec3& apart) {
+  const double distance = norm(apart), side = b.hollow ? -1.0 : 1.0;
+  const Vec3 normal = side * (distance > kTiny ? (1.0 / distance) * apart : b.rotation.column(0));
+  const double gap = side * (distance - b.size.x) - ball.radius;
   return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
+}
+
+Touch against_sphere(const Ball& ball, const Shape& sphere) {
+  return against_round(ball, sphere, ball.centre - sphere.position);
+}
+
+Touch against_cylinder(const Ball& ball, const Shape& cylinder) {
+  return against_round(ball, cylinder, across(ball.centre - cylinder.position, cylinder.rotation.column(2)));
 }
 
 // A centre inside the box leaves through the nearest face.
@@ -105,26 +117,31 @@ Ball ball_of_corner(const Shape& a, int corner) {
 // The point of a capsule's axis that matters for B, with the capsule's radius.
 Ball ball_of_capsule(const Shape& a, const Shape& b, int slot) {
   const Vec3 half_axis = a.size.y * a.rotation.column(2);
-  if (b.type == ShapeType::kPlane) return {slot == 0 ? a.position - half_axis : a.position + half_axis, a.size.x};
+  if (b.type == ShapeType::kPlane || b.hollow) return {slot == 0 ? a.position - half_axis : a.position + half_axis, a.size.x};
   const Vec3 start = a.position - half_axis;
   const Vec3 along = 2.0 * half_axis;
   double t = 0.0;
   if (b.type == ShapeType::kBox) {
     t = nearest_on_segment(b.rotation.to_local(start - b.position), b.rotation.to_local(along), b.size);
-  } else if (const double length2 = dot(along, along); length2 > 0.0) {
-    t = std::clamp(dot(b.position - start, along) / length2, 0.0, 1.0);
+  } else {
+    // nearest to the centre, or to the axis; the middle where the two run side by side
+    const bool round = b.type == ShapeType::kCylinder;
+    const Vec3 way = round ? across(along, b.rotation.column(2)) : along;
+    const double length2 = dot(way, way);
+    t = length2 > kTiny ? std::clamp(dot(b.position - start, way) / length2, 0.0, 1.0) : 0.5;
   }
   return {start + t * along, a.size.x};
 }
 
 }  // namespace
 
-int slot_count(ShapeType a, ShapeType b) {
-  const bool b_known = b == ShapeType::kPlane || b == ShapeType::kSphere || b == ShapeType::kBox;
-  if (!b_known) return 0;
+int slot_count(ShapeType a, ShapeType b, bool hollow) {
+  const bool round = b == ShapeType::kSphere || b == ShapeType::kCylinder;
+  if (hollow && !round) return 0;
+  if (!round && b != ShapeType::kPlane && b != ShapeType::kBox) return 0;
   if (a == ShapeType::kSphere) return 1;
-  if (a == ShapeType::kCapsule) return b == ShapeType::kPlane ? 2 : 1;
-  if (a == ShapeType::kBox) return b == ShapeType::kSphere ? 0 : kCorners;
+  if (a == ShapeType::kCapsule) return b == ShapeType::kPlane || hollow ? 2 : 1;
+  if (a == ShapeType::kBox) return round && !hollow ? 0 : kCorners;
   return 0;
 }
 
@@ -138,6 +155,7 @@ Touch touch(const Shape& a, const Shape& b, int slot) {
   switch (b.type) {
     case ShapeType::kPlane: return against_plane(ball, b);
     case ShapeType::kSphere: return against_sphere(ball, b);
+    case ShapeType::kCylinder: return against_cylinder(ball, b);
     default: return against_box(ball, b);
   }
 }

@@ -12,6 +12,7 @@ namespace pliant::contact {
 struct Pair {
   int geom_a, geom_b;
   Material material;
+  bool hollow;  // geom_b's material is outside of it
   int first_slot, slots;
 };
 
@@ -43,7 +44,7 @@ using HalfStep = void (*)(const void* model, void* data);
 class World {
  public:
   // Returns the first slot of the pair, or -1 if the shapes are not supported in this order.
-  int add_pair(const Views& views, int geom_a, int geom_b, const Material& material);
+  int add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow);
   int slots() const { return slots_; }
   const std::vector<Pair>& pairs() const { return pairs_; }
 

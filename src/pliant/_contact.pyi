@@ -15,9 +15,9 @@ class ContactLoop:
     """
 
     def __init__(self, model: Any, data: Any, step1: int, step2: int) -> None: ...
-    def add_pair(self, geom_a: int, geom_b: int, material: Array) -> tuple[int, int]:
+    def add_pair(self, geom_a: int, geom_b: int, material: Array, hollow: bool = False) -> tuple[int, int]:
         """Adds a pair of geoms; material (8,) in the order of `ContactMaterial`. Returns its first slot and its number
-        of slots.
+        of slots. `hollow`: the material of the second, a sphere or a cylinder, is outside of it.
 
         Raises ValueError: an unknown geom, or shapes that are not supported in this order.
         """

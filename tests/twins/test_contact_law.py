@@ -23,16 +23,20 @@ SHAPES = {
     "brick": '<geom name="brick" type="box" size=".05 .08 .11" mass="2" pos="0 .01 0"/>',
     "anvil": '<geom name="anvil" type="box" size=".2 .1 .06" mass="3" quat=".8 0 .2 .1"/>',
     "bowl": '<geom name="bowl" type="sphere" size=".15" mass="1"/>',
+    "shaft": '<geom name="shaft" type="cylinder" size=".06 .1" mass="1" quat=".7 .1 .2 .3"/>',
+    "pipe": '<geom name="pipe" type="cylinder" size=".16 .1" mass="1" quat=".7 .3 .2 .1"/>',
+    "dish": '<geom name="dish" type="sphere" size=".17" mass="1"/>',
 }
 XML = (
     '<mujoco><worldbody><geom name="ground" type="plane" size="0 0 1" pos="0 0 .02" quat=".98 .1 .1 0"/>'
     + "".join(f'<body name="{name}" pos="0 0 .2"><freejoint/>{geom}</body>' for name, geom in SHAPES.items())
     + "</worldbody></mujoco>"
 )
+HOLLOW = ("pipe", "dish")
 PAIRS = [
     (a, b)
-    for a, b in itertools.product(("ball", "rod", "brick"), ("ground", "anvil", "bowl"))
-    if (a, b) != ("brick", "bowl")
+    for a, b in itertools.product(("ball", "rod", "brick"), ("ground", "anvil", "bowl", "shaft", *HOLLOW))
+    if (a, b) not in (("brick", "bowl"), ("brick", "shaft"))
 ]
 MATERIAL = np.array([2e5, 3e2, 1e-3, 0.5, 0.3, 1e-3, 1e5, 2e2])
 DT = 2e-5  # s
@@ -46,15 +50,19 @@ def nearest_in_box(p: Vector, half: Vector) -> Vector:
 
 
 def touch_ball(
-    centre: Vector, radius: float, kind: int, size: Vector, x: Vector, R: Vector
+    centre: Vector, radius: float, kind: int, size: Vector, x: Vector, R: Vector, hollow: bool
 ) -> tuple[Vector, Vector, float]:
     """Point, normal and penetration of a ball against a shape."""
     if kind == mujoco.mjtGeom.mjGEOM_PLANE:
         normal = R[:, 2]
         depth = radius - normal @ (centre - x)
-    elif kind == mujoco.mjtGeom.mjGEOM_SPHERE:
-        normal = (centre - x) / np.linalg.norm(centre - x)
-        depth = radius + size[0] - np.linalg.norm(centre - x)
+    elif kind == mujoco.mjtGeom.mjGEOM_SPHERE or kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        local = R.T @ (centre - x)
+        local[2] *= kind == mujoco.mjtGeom.mjGEOM_SPHERE
+        distance = np.linalg.norm(local)
+        normal, depth = R @ local / distance, radius + size[0] - distance
+        if hollow:
+            normal, depth = -normal, radius - (size[0] - distance)
     else:
         local = R.T @ (centre - x)
         nearest = nearest_in_box(local, size)
@@ -69,7 +77,7 @@ def touch_ball(
 
 
 def balls_of(
-    kind: int, size: Vector, x: Vector, R: Vector, b: tuple[int, Vector, Vector, Vector]
+    kind: int, size: Vector, x: Vector, R: Vector, b: tuple[int, Vector, Vector, Vector, bool]
 ) -> list[tuple[Vector, float]]:
     """What a shape presents to another: centres and radii."""
     if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
@@ -78,8 +86,8 @@ def balls_of(
         signs = [(i, j, k) for k in (-1, 1) for j in (-1, 1) for i in (-1, 1)]
         return [(x + R @ (np.array(s) * size), 0.0) for s in signs]
     start, along = x - size[1] * R[:, 2], 2.0 * size[1] * R[:, 2]
-    kind_b, size_b, x_b, R_b = b
-    if kind_b == mujoco.mjtGeom.mjGEOM_PLANE:
+    kind_b, size_b, x_b, R_b, hollow = b
+    if kind_b == mujoco.mjtGeom.mjGEOM_PLANE or hollow:
         return [(start, size[0]), (start + along, size[0])]
 
     def distance(t: float) -> float:
@@ -87,6 +95,8 @@ def balls_of(
         if kind_b == mujoco.mjtGeom.mjGEOM_SPHERE:
             return float(np.linalg.norm(p - x_b))
         local = R_b.T @ (p - x_b)
+        if kind_b == mujoco.mjtGeom.mjGEOM_CYLINDER:
+            return float(np.linalg.norm(local[:2]))
         return float(np.linalg.norm(local - nearest_in_box(local, size_b)))
 
     return [(start + smallest(distance) * along, size[0])]
@@ -145,7 +155,7 @@ def twin(model: mujoco.MjModel, data: mujoco.MjData, bristles: Vector) -> tuple[
     slot = 0
     for a, b in PAIRS:
         ga, gb = model.geom(a), model.geom(b)
-        shape_b = (gb.type[0], gb.size, data.geom(b).xpos, data.geom(b).xmat.reshape(3, 3))
+        shape_b = (gb.type[0], gb.size, data.geom(b).xpos, data.geom(b).xmat.reshape(3, 3), b in HOLLOW)
         for centre, radius in balls_of(
             ga.type[0], ga.size, data.geom(a).xpos, data.geom(a).xmat.reshape(3, 3), shape_b
         ):
@@ -182,7 +192,7 @@ def scene() -> tuple[mujoco.MjModel, mujoco.MjData, ContactLoop]:
     data = mujoco.MjData(model)
     loop = ContactLoop(model, data, *half_steps())
     for a, b in PAIRS:
-        loop.add_pair(model.geom(a).id, model.geom(b).id, MATERIAL)
+        loop.add_pair(model.geom(a).id, model.geom(b).id, MATERIAL, b in HOLLOW)
     return model, data, loop
 
 

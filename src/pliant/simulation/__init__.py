@@ -7,8 +7,10 @@ from pliant.simulation.imperfections.plant import ImperfectPlant, ImperfectWorld
 from pliant.simulation.joint_effects import JointEffects
 from pliant.simulation.joint_stops import JointStops
 from pliant.simulation.link_capsule import LinkCapsule
+from pliant.simulation.part import Part
 from pliant.simulation.plant import MujocoPlant
-from pliant.simulation.scene import Ball, Box, Plane, Scene, Surface, floor, table, wall
+from pliant.simulation.scene import Ball, Box, Plane, Scene, fixed_part, floor, table, wall
+from pliant.simulation.surface import Surface
 from pliant.simulation.world import World
 
 __all__ = [
@@ -22,11 +24,13 @@ __all__ = [
     "JointStops",
     "LinkCapsule",
     "MujocoPlant",
+    "Part",
     "Plane",
     "Push",
     "Scene",
     "Surface",
     "World",
+    "fixed_part",
     "floor",
     "random_pushes",
     "table",

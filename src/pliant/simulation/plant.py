@@ -15,14 +15,14 @@ from pliant.signals import Command, Measurement, Truth
 from pliant.simulation.compiled_world import WorldParts
 from pliant.simulation.contact.explicit import ExplicitContacts, explicit_contacts
 from pliant.simulation.contact.mujoco_forces import contact_wrenches
-from pliant.simulation.contact.pairs import pairs_of
+from pliant.simulation.contact.pairs import can_move, pairs_of
 from pliant.simulation.disturbances import Push
 from pliant.simulation.equilibrium import holding_torque
 from pliant.simulation.force_sensor import ForceSensor, sensor_reading
 from pliant.simulation.joint_effects import JointEffects
 from pliant.simulation.joint_stops import JointStops, limits_of
 from pliant.simulation.link_capsule import LinkCapsule
-from pliant.simulation.scene import Plane, Scene
+from pliant.simulation.scene import Scene
 from pliant.simulation.stepping import shares, substeps
 from pliant.simulation.world import World
 from pliant.spatial import Array
@@ -92,13 +92,10 @@ class MujocoPlant(Plant[World]):
         self._parts = parts.touching_geoms
         pairs = pairs_of(self.scene, self._parts)
         self.model = parts.compile(physics_step, pairs)
-        self.explicit = explicit_contacts(self.model, self.start, pairs) if explicit else None
+        self.explicit = explicit_contacts(self.model, self.start, pairs, self.scene.hollow) if explicit else None
         self._sites = {name: self.model.site(name).id for name in dict.fromkeys(frames)}
-        self._movable = {
-            thing.name: self.model.body(thing.name).id
-            for thing in self.scene.things
-            if not isinstance(thing, Plane) and thing.mass > 0.0
-        }
+        things = [thing.name for thing in self.scene.things if can_move(thing)]
+        self._movable = {name: self.model.body(name).id for name in things}
         self._contact_frames = {self.model.geom(geom).id: frame for geom, frame in self._parts.items()}
         self._lower, self._upper = limits_of(self.model, robot)
         self._felt = {s: [f for f in self._parts.values() if robot.carries(s.frame, f)] for s in self.sensors}

@@ -11,33 +11,10 @@ import numpy as np
 
 from pliant.errors import ConfigError, options
 from pliant.mujoco_model import VISUAL_GROUP, quaternion
+from pliant.simulation.part import WOOD, Part
+from pliant.simulation.surface import Surface
 from pliant.spatial import Array, frame_with_z_along, rpy
-
-
-@dataclass(frozen=True)
-class Surface:
-    """How a thing feels to the touch.
-
-    Raises:
-        ConfigError: on construction, when a value is negative, not finite, or the stiffness is zero.
-    """
-
-    stiffness: float = 1e4
-    """N/m of penetration"""
-    damping: float = 1e2
-    """N s/m of penetration speed"""
-    friction: float = 0.5
-    """Coulomb coefficient; at rest where the contact law distinguishes"""
-    friction_moving: float | None = None
-    """Coulomb coefficient while sliding; None: the same"""
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.stiffness) and self.stiffness > 0.0):
-            raise ConfigError(f"contact stiffness must be above zero (N/m), got {self.stiffness}")
-        for name in ("damping", "friction", "friction_moving"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value >= 0.0):
-                raise ConfigError(f"contact {name} must not be negative, got {value}")
+from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 
 
 @dataclass(frozen=True)
@@ -53,6 +30,11 @@ class Plane:
     extent: tuple[float, float] = (1.0, 1.0)
     """m, half sizes of the part that is drawn"""
     rgba: tuple[float, float, float, float] = (0.80, 0.82, 0.85, 1.0)
+
+    @property
+    def geometry(self) -> PlaneSurface:
+        """Where its surface is."""
+        return PlaneSurface.facing(self.normal, self.point)
 
     def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
         """Adds the half-space (invisible) and a thin plate that shows it. Returns the geom that touches."""
@@ -127,7 +109,7 @@ class Ball:
         )
 
 
-Thing = Plane | Box | Ball
+Thing = Plane | Part | Box | Ball
 
 
 @dataclass(frozen=True)
@@ -135,7 +117,7 @@ class Scene:
     """Everything the robot can meet, and which law rules the contacts.
 
     Raises:
-        ConfigError: on construction, when two things share a name or the law is unknown.
+        ConfigError: on construction, when two things share a name, the law is unknown, or it cannot do a hollow part.
     """
 
     things: tuple[Thing, ...] = ()
@@ -149,6 +131,48 @@ class Scene:
             raise ConfigError(f"the things of a scene need different names, got {names}")
         if self.contact not in ("mujoco", "explicit"):
             raise ConfigError(f"unknown contact law {self.contact!r}; {options(['mujoco', 'explicit'], self.contact)}")
+        if self.hollow and self.contact == "mujoco":
+            raise ConfigError(
+                f"part {min(self.hollow)!r} is hollow, which MuJoCo's contacts cannot be: set contact = 'explicit'"
+            )
+
+    @property
+    def hollow(self) -> frozenset[str]:
+        """Names of the parts that are touched from within."""
+        return frozenset(thing.name for thing in self.things if isinstance(thing, Part) and thing.geometry.hollow)
+
+    @property
+    def faces(self) -> tuple[Plane | Part, ...]:
+        """The things that cannot move and whose whole surface has a closed form."""
+        return tuple(thing for thing in self.things if isinstance(thing, Plane | Part))
+
+
+def fixed_part(
+    name: str,
+    geometry: SurfaceGeometry,
+    surface: Surface | None = None,
+    extent: tuple[float, float] = (0.25, 0.25),
+) -> Plane | Part:
+    """The thing of a scene whose surface is a given one.
+
+    Args:
+        name: of the thing.
+        geometry: a plane, cylinder or sphere.
+        surface: how it feels; None: the defaults of `Surface`.
+        extent: m, half sizes of the part of a plane that is drawn; of a cylinder the first one along its axis.
+
+    Raises:
+        ConfigError: another kind of surface.
+    """
+    match geometry:
+        case PlaneSurface():
+            x, y, z = geometry.origin.tolist()
+            n_x, n_y, n_z = geometry.rotation[:, 2].tolist()
+            return Plane(name, (x, y, z), (n_x, n_y, n_z), surface or Surface(), extent, WOOD)
+        case CylinderSurface() | SphereSurface():
+            return Part(name, geometry, surface or Surface(), extent[0])
+        case _:
+            raise ConfigError(f"no contact law for a {type(geometry).__name__}; valid: plane, cylinder, sphere")
 
 
 def floor(height: float = 0.0, surface: Surface | None = None) -> Plane:
@@ -161,7 +185,7 @@ def floor(height: float = 0.0, surface: Surface | None = None) -> Plane:
 def table(point: tuple[float, float, float], tilt: float = 0.0, surface: Surface | None = None) -> Plane:
     """A table top through a point in m, tilted about the world's x axis by an angle in rad."""
     normal = (0.0, -math.sin(tilt), math.cos(tilt))
-    return Plane("table", point, normal, surface or Surface(), (0.25, 0.25), (0.78, 0.70, 0.60, 1.0))
+    return Plane("table", point, normal, surface or Surface(), (0.25, 0.25), WOOD)
 
 
 def wall(

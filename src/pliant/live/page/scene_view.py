@@ -14,7 +14,7 @@ from pliant.live.link.messages import Picture
 from pliant.live.page.shapes import add_look, cone
 from pliant.live.page.visual_shapes import Look
 from pliant.mujoco_model import quaternion
-from pliant.simulation import Plane, Scene
+from pliant.simulation import Part, Plane, Scene
 from pliant.spatial import Array, frame_with_z_along
 
 MEASURED, ASKED, PUSH = (194, 47, 47), (11, 111, 184), (178, 73, 162)
@@ -40,7 +40,7 @@ class SceneView:
         self._server, self._scene = server, server.scene
         self._bodies: list[viser.FrameHandle] = []
         self._ghosts: list[viser.FrameHandle] = []
-        self._planes: tuple[Plane, ...] = ()
+        self._faces: tuple[Plane | Part, ...] = ()
         self._tool_trace: deque[Array] = deque(maxlen=_TRACE)
         self._target_trace: deque[Array] = deque(maxlen=_TRACE)
         self._shown: dict[str, bool] = {}
@@ -77,7 +77,8 @@ class SceneView:
         length = float(np.linalg.norm(reach))
         reach = reach / length if length > 0.05 else np.array([1.0, 0.0, 0.0])
         side = np.array([-reach[1], reach[0], 0.0])
-        walls = [plane.normal for plane in self._planes if abs(plane.normal[2]) < 0.7]
+        normals = [face.geometry.normal(tool) for face in self._faces]
+        walls = [normal for normal in normals if abs(normal[2]) < 0.7]
         if sum(float(np.dot(side, normal)) for normal in walls) < 0.0 or (not walls and side[1] > 0.0):
             side = -side
         middle = 0.5 * reach * max(length, 0.2) + np.array([0.0, 0.0, 0.5 * max(float(tool[2]), 0.5)])
@@ -97,7 +98,7 @@ class SceneView:
                 add_look(self._scene, f"/bodies/{look.body}/{look.name}", look)
                 if look.robot and look.body:
                     add_look(self._scene, f"/ghost/{look.body}/{look.name}", look, ghost=True)
-        self._planes = () if scene is None else tuple(thing for thing in scene.things if isinstance(thing, Plane))
+        self._faces = () if scene is None else scene.faces
         self.forget()
 
     def forget(self) -> None:
@@ -167,21 +168,21 @@ class SceneView:
     def _contact_cone(self, picture: Picture) -> None:
         """Friction cone where the first frame in contact touches the nearest surface."""
         touching = [at for at, force in picture.contacts.values() if np.linalg.norm(force) > 0.1]
-        if not touching or not self._planes:
+        if not touching or not self._faces:
             if self._cone is not None:
                 self._cone.visible = False
             return
         at = touching[0]
-        plane = min(self._planes, key=lambda p: abs(float(np.dot(at - np.array(p.point), p.normal))))
-        if self._cone is None or self._cone_friction != plane.surface.friction:
-            vertices, faces = cone(_CONE_HEIGHT, _CONE_HEIGHT * plane.surface.friction)
+        face = min(self._faces, key=lambda each: abs(each.geometry.near(at).distance))
+        if self._cone is None or self._cone_friction != face.surface.friction:
+            vertices, faces = cone(_CONE_HEIGHT, _CONE_HEIGHT * face.surface.friction)
             self._cone = self._scene.add_mesh_simple(
                 "/cone", vertices, faces, color=(224, 161, 0), opacity=0.35, side="double", **_NO_SHADOW
             )
-            self._cone_friction = plane.surface.friction
+            self._cone_friction = face.surface.friction
         self._cone.visible = True
         self._cone.position = at
-        self._cone.wxyz = quaternion(frame_with_z_along(plane.normal))
+        self._cone.wxyz = quaternion(frame_with_z_along(face.geometry.normal(at)))
 
 
 _GRID: dict[str, Any] = {

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,17 +18,19 @@ import numpy as np
 from pliant._contact import BRISTLE_SIZE, ContactLoop
 from pliant.errors import ConfigError, RunFailedError
 from pliant.simulation.contact.material import ContactMaterial, require_stable_step
-from pliant.simulation.scene import Surface
+from pliant.simulation.surface import Surface
 from pliant.spatial import Array
 
 
 @dataclass(frozen=True)
 class ContactPair:
-    """Two geoms that can touch: the first a sphere, capsule or box, the second a plane, box or sphere."""
+    """Two geoms that can touch: the first a sphere, capsule or box, the second a plane, box, sphere or cylinder."""
 
     geom_a: str
     geom_b: str
     material: ContactMaterial
+    hollow: bool = False
+    """the material of the second, a sphere or a cylinder, is outside of it"""
 
 
 @dataclass(slots=True)
@@ -122,11 +124,12 @@ class ExplicitContacts:
 
     def _add(self, loop: ContactLoop, geom_a: int, geom_b: int, pair: ContactPair) -> slice:
         try:
-            first, count = loop.add_pair(geom_a, geom_b, pair.material.row())
+            first, count = loop.add_pair(geom_a, geom_b, pair.material.row(), pair.hollow)
         except ValueError as error:
             raise ConfigError(
                 f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule or box"
-                " against a plane or a box, a sphere or capsule against a sphere"
+                " against a plane, a box or the inside of a hollow sphere or cylinder, a sphere or capsule against the"
+                " outside of one"
             ) from error
         return slice(first, first + count)
 
@@ -142,7 +145,10 @@ class ExplicitContacts:
 
 
 def explicit_contacts(
-    model: mujoco.MjModel, start: Array, pairs: Sequence[tuple[str, str, Surface]]
+    model: mujoco.MjModel,
+    start: Array,
+    pairs: Sequence[tuple[str, str, Surface]],
+    hollow: Collection[str] = (),
 ) -> ExplicitContacts:
     """The contacts of a model, checked for the physics step they need.
 
@@ -150,6 +156,7 @@ def explicit_contacts(
         model: compiled; `timestep` set.
         start: (n,) configuration of the robot, whose joints come first.
         pairs: two geoms and what they feel like to each other.
+        hollow: geoms whose material is outside of them.
 
     Raises:
         ConfigError: a pair of shapes without a law, or a physics step that is too long for a contact.
@@ -163,7 +170,7 @@ def explicit_contacts(
         inverse_mass += _inverse_mass(model, data, model.geom(b).id, presses=False)
         material = ContactMaterial.of(surface, inverse_mass)
         require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
-        made.append(ContactPair(a, b, material))
+        made.append(ContactPair(a, b, material, b in hollow))
     return ExplicitContacts(model, made)
 
 

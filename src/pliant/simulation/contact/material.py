@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.simulation.scene import Surface
+from pliant.simulation.surface import Surface
 from pliant.spatial import Array
 
 _TRANSITION = 1e-3  # m, [HapFIC] sec. III

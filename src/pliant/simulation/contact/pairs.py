@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import combinations
 
-from pliant.simulation.scene import Ball, Box, Plane, Scene, Surface, Thing
+from pliant.simulation.part import Part
+from pliant.simulation.scene import Ball, Box, Plane, Scene, Thing
+from pliant.simulation.surface import Surface
 
 PairOfGeoms = tuple[str, str, Surface]
 """two geoms, the second the one that the contact's normal belongs to"""
@@ -23,7 +25,7 @@ def pairs_of(scene: Scene, robot_geoms: Iterable[str]) -> list[PairOfGeoms]:
     """
     pairs: list[PairOfGeoms] = [(geom, thing.name, thing.surface) for geom in robot_geoms for thing in scene.things]
     for first, second in combinations(scene.things, 2):
-        if not (_can_move(first) or _can_move(second)):
+        if not (can_move(first) or can_move(second)):
             continue
         a, b = sorted((first, second), key=_rank)
         pairs.append((a.name, b.name, _surface(a, b)))
@@ -33,15 +35,15 @@ def pairs_of(scene: Scene, robot_geoms: Iterable[str]) -> list[PairOfGeoms]:
 
 
 def _rank(thing: Thing) -> int:
-    """Order in which the explicit law takes a pair: balls press on boxes, and everything on planes."""
+    """Order in which the explicit law takes a pair: balls press on boxes, and everything on planes and parts."""
     return 0 if isinstance(thing, Ball) else 1 if isinstance(thing, Box) else 2
 
 
-def _can_move(thing: Thing) -> bool:
-    return not isinstance(thing, Plane) and thing.mass > 0.0
+def can_move(thing: Thing) -> bool:
+    return not isinstance(thing, Plane | Part) and thing.mass > 0.0
 
 
 def _surface(a: Thing, b: Thing) -> Surface:
-    if _can_move(a) and _can_move(b):
+    if can_move(a) and can_move(b):
         return min(a.surface, b.surface, key=lambda surface: surface.stiffness)
-    return a.surface if _can_move(a) else b.surface
+    return a.surface if can_move(a) else b.surface

@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.simulation.scene import Surface
+from pliant.simulation.surface import Surface
 
 _IMPEDANCE = 1e-4
 _TANGENTIAL_DAMPING = 300.0  # N s/m of viscosity below the friction limit; more chatters on a light tool

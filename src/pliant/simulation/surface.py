@@ -1,0 +1,34 @@
+"""How a thing feels to the touch, in physical units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from pliant.errors import ConfigError
+
+
+@dataclass(frozen=True)
+class Surface:
+    """How a thing feels to the touch.
+
+    Raises:
+        ConfigError: on construction, when a value is negative, not finite, or the stiffness is zero.
+    """
+
+    stiffness: float = 1e4
+    """N/m of penetration"""
+    damping: float = 1e2
+    """N s/m of penetration speed"""
+    friction: float = 0.5
+    """Coulomb coefficient; at rest where the contact law distinguishes"""
+    friction_moving: float | None = None
+    """Coulomb coefficient while sliding; None: the same"""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.stiffness) and self.stiffness > 0.0):
+            raise ConfigError(f"contact stiffness must be above zero (N/m), got {self.stiffness}")
+        for name in ("damping", "friction", "friction_moving"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value >= 0.0):
+                raise ConfigError(f"contact {name} must not be negative, got {value}")
