@@ -70,7 +70,7 @@ def measured(seconds: float, chromium: str | None) -> dict[str, float]:
     links: list[str] = []
     with (
         tempfile.TemporaryDirectory() as folder,
-        page_beside("127.0.0.1", 0, Path(folder), lambda url, guarded: links.append(url)) as link,
+        page_beside("127.0.0.1", 0, Path(folder), lambda url, exposed: links.append(url)) as link,
         looking(links[0], chromium),
     ):
         session = Session(study, config, link.send, 1, experiment=experiment, restarts=False)

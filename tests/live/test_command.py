@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import importlib.util
+import multiprocessing
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from pliant.cli.app import app
+from pliant.errors import RunFailedError
 from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
+from pliant.live.page.page import Page
 from pliant.live.page.replay import LoggedScene, ReplayPage
+from pliant.live.server.launch import serve_live
 from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
 
@@ -106,3 +111,24 @@ def test_a_page_beside_a_run_ends_with_it(tmp_path: Path) -> None:
     assert log.failure is None
     assert len(log.time()) == 1500
     assert (tmp_path / "summary.json").exists()
+
+
+def test_a_loop_that_is_killed_ends_the_command_with_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[tuple[str, float]] = []
+    killed: list[float] = []
+
+    def kill(server: PageServer) -> None:
+        [loop] = [child for child in multiprocessing.active_children() if child.name == "pliant-loop"]
+        loop.kill()
+        loop.join()
+        killed.append(time.monotonic())
+
+    monkeypatch.setattr(Page, "mourn", lambda page, text: said.append((text, time.monotonic())))
+    study = get_study("stack")
+    with pytest.raises(RunFailedError, match="the process of the loop has ended unexpectedly"):
+        serve_live("stack", study.case("figure8-plain"), "127.0.0.1", 0, tmp_path, kill)
+    [(text, at)] = said
+    assert "loop has ended" in text
+    assert at - killed[0] < 2.0

@@ -166,7 +166,7 @@ def live(
     robot: RobotOption = None,
     seed: Seed = None,
     host: Annotated[
-        str, typer.Option(help="Address to listen at. Any but the default lets other machines in, with a token.")
+        str, typer.Option(help="Address to listen at. Any but the default lets other machines in that have the link.")
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free one.")] = 8080,
     out: Out = None,

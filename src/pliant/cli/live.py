@@ -35,7 +35,7 @@ def live_command(
     if target.endswith(".mcap"):
         from pliant.live.page.replay import serve_replay
 
-        serve_replay(Path(target), host, port, lambda server: announce(console, complain, server.url, server.guarded))
+        serve_replay(Path(target), host, port, lambda server: announce(console, complain, server.url, server.exposed))
         return
     from pliant.live.server.launch import serve_live
 
@@ -48,15 +48,15 @@ def live_command(
             host,
             port,
             folder,
-            lambda server: announce(console, complain, server.url, server.guarded),
+            lambda server: announce(console, complain, server.url, server.exposed),
         )
     except KeyboardInterrupt:
         console.print("\nthe page is closed")
 
 
-def announce(console: Console, complain: Console, url: str, guarded: bool) -> None:
+def announce(console: Console, complain: Console, url: str, exposed: bool) -> None:
     """Prints where the page is, with a warning where others can reach it."""
-    if guarded:
+    if exposed:
         text = "warning: other machines can reach this page; whoever has the link can steer, and nothing is encrypted"
         complain.print(text, style="yellow", markup=False, highlight=False, soft_wrap=True)
     console.print(f"open  {url}\nstop  Ctrl-C", markup=False, highlight=False, soft_wrap=True)

@@ -82,8 +82,8 @@ def _page(
     require_viser()
     from pliant.live.server.beside import beside
 
-    def tell(url: str, guarded: bool) -> None:
-        announce(console, complain, url, guarded)
+    def tell(url: str, exposed: bool) -> None:
+        announce(console, complain, url, exposed)
 
     with beside(study, config, experiment, DEFAULT_HOST, 0, folder, tell) as page:
         yield {"experiment": page.experiment, "observers": page.observers, "pace": page.pace}

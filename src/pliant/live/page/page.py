@@ -100,6 +100,15 @@ class Page:
                 self.plots.draw()
             time.sleep(_SCENE_PERIOD)
 
+    @property
+    def lost(self) -> bool:
+        """Whether the loop went without being asked to."""
+        return self._link.closed.is_set() and not self._stop.is_set()
+
+    def mourn(self, text: str) -> None:
+        """Says in every browser that the loop is gone."""
+        self._note(Note("failed", text))
+
     def stop(self) -> None:
         """Ends `serve`."""
         self._stop.set()

@@ -42,7 +42,7 @@ def beside(
         study, config, experiment: the run.
         host, port: where browsers connect.
         folder: where the run writes.
-        announce: told the address, and whether it carries a token.
+        announce: told the address, and whether other machines can reach it.
 
     Raises:
         ConfigError: the address cannot be listened at, or the plant cannot be shown.

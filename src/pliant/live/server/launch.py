@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import multiprocessing
 import signal
+import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from pathlib import Path
 from types import FrameType
 
+from pliant.errors import RunFailedError
 from pliant.experiments.base import CaseConfig
 from pliant.live.link.pipe import Link
 from pliant.live.loop.worker import main as run_worker
@@ -17,6 +19,8 @@ from pliant.live.page.page import Page
 from pliant.live.server.web import PageServer
 
 _PATIENCE = 10.0  # s for the other process to finish its log
+_LAST_WORDS = 3.0  # s in which browsers learn that the loop is gone
+_LOST = "the process of the loop has ended unexpectedly; start the command again"
 Announce = Callable[[PageServer], None]
 """told the address once the page can be opened"""
 
@@ -33,11 +37,16 @@ def serve_live(study: str, config: CaseConfig, host: str, port: int, folder: Pat
 
     Raises:
         ConfigError: the address cannot be listened at.
+        RunFailedError: the process of the loop ended unasked.
     """
     with PageServer(host, port) as server, live_page(server, folder) as page:
         page.run.start(study, config)
         announce(server)
         _serve_until_told(page)
+        if page.lost:
+            page.mourn(_LOST)
+            time.sleep(_LAST_WORDS)
+            raise RunFailedError(_LOST)
 
 
 @contextmanager
@@ -65,7 +74,7 @@ def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, boo
     Args:
         host, port: where browsers connect.
         folder: where logs go.
-        announce: told the address, and whether it carries a token.
+        announce: told the address, and whether other machines can reach it.
 
     Raises:
         ConfigError: the address cannot be listened at.
@@ -77,10 +86,10 @@ def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, boo
     child = context.Process(target=_run_page, args=(far, host, port, folder), name="pliant-page", daemon=True)
     child.start()
     far.close()
-    url, guarded = near.recv()
+    url, exposed = near.recv()
     if not url:
-        raise ConfigError(guarded)
-    announce(url, guarded)
+        raise ConfigError(exposed)
+    announce(url, exposed)
     link = Link(near)
     try:
         yield link
@@ -100,7 +109,7 @@ def _run_page(connection: Connection, host: str, port: int, folder: Path) -> Non
     except PliantError as error:
         connection.send(("", str(error)))
         return
-    connection.send((server.url, server.guarded))
+    connection.send((server.url, server.exposed))
     with server:
         Page(server, Link(connection), folder).serve()
 

@@ -1,15 +1,12 @@
-"""The web server of the page: viser on the loopback interface, behind the gate."""
+"""The web server of the page: viser behind a door that asks for the token."""
 
 from __future__ import annotations
 
-import contextlib
-import io
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
-import viser
-
-from pliant.live.server.access import Gate, is_loopback, new_token
+from pliant.live.server.access import Door, is_loopback, listen, new_token
+from pliant.live.server.closed import closed_viser, silent
 
 _BRAND = (11, 111, 184)
 
@@ -25,19 +22,19 @@ class PageServer:
     """
 
     def __init__(self, host: str, port: int) -> None:
-        token = "" if is_loopback(host) else new_token()
-        with _silent():
-            self.viser = viser.ViserServer("127.0.0.1", 0, label="pliant", verbose=False)
+        listening = listen(host, port)
+        self.port = int(listening.getsockname()[1])
+        door = Door(host, self.port, new_token())
         try:
-            self._gate = Gate(host, port, self.viser.get_port(), token)
+            self.viser = closed_viser(door, listening)
         except BaseException:
-            self._stop_viser()
+            listening.close()
             raise
-        self.port = self._gate.port
         shown = f"[{host}]" if ":" in host else host
-        self.url = f"http://{shown}:{self.port}/" + (f"?token={token}" if token else "")
+        self.url = f"http://{shown}:{self.port}/?token={door.token}"
         """link that opens the page"""
-        self.guarded = bool(token)
+        self.exposed = not is_loopback(host)
+        """whether other machines can reach the page"""
         gui = self.viser.gui
         gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BRAND, control_width="medium")
         gui.main_panel.dock_right()
@@ -45,11 +42,7 @@ class PageServer:
 
     def stop(self) -> None:
         """Takes the page away."""
-        self._gate.stop()
-        self._stop_viser()
-
-    def _stop_viser(self) -> None:
-        with _silent():
+        with silent():
             self.viser.stop()
 
     def __enter__(self) -> Self:
@@ -59,8 +52,3 @@ class PageServer:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.stop()
-
-
-def _silent() -> contextlib.AbstractContextManager[Any]:
-    """viser announces an address of its own, which is not the one to open."""
-    return contextlib.redirect_stdout(io.StringIO())
