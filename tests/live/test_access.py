@@ -15,6 +15,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
 from pliant.errors import ConfigError
+from pliant.live.server import closed
 from pliant.live.server.access import Door, is_loopback, listen
 from pliant.live.server.web import PageServer
 
@@ -158,7 +159,13 @@ def test_garbage_in_place_of_a_request(server: PageServer) -> None:
     assert ask(server.port, Cookie=cookie(server)).status == 200
 
 
-def test_slow_strangers_hold_nobody_up(server: PageServer) -> None:
+def test_slow_strangers_hold_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(closed, "_PATIENCE", 1.0)
+    with PageServer("127.0.0.1", 0) as server:
+        _hold_up(server)
+
+
+def _hold_up(server: PageServer) -> None:
     silent = [socket.create_connection(("127.0.0.1", server.port), timeout=30) for _ in range(20)]
     try:
         silent[0].sendall(b"G")

@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from types import FrameType
 
-from pliant.errors import RunFailedError
+from pliant.errors import ConfigError, PliantError, RunFailedError
 from pliant.experiments.base import CaseConfig
 from pliant.live.link.pipe import Link
 from pliant.live.loop.worker import main as run_worker
@@ -78,15 +78,17 @@ def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, boo
 
     Raises:
         ConfigError: the address cannot be listened at.
+        RunFailedError: the process of the page ended before the page could be opened.
     """
-    from pliant.errors import ConfigError
-
     context = multiprocessing.get_context("spawn")
     near, far = context.Pipe()
     child = context.Process(target=_run_page, args=(far, host, port, folder), name="pliant-page", daemon=True)
     child.start()
     far.close()
-    url, exposed = near.recv()
+    try:
+        url, exposed = near.recv()
+    except EOFError as error:
+        raise RunFailedError("the process of the page has ended before the page could be opened") from error
     if not url:
         raise ConfigError(exposed)
     announce(url, exposed)
@@ -101,8 +103,6 @@ def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, boo
 
 
 def _run_page(connection: Connection, host: str, port: int, folder: Path) -> None:
-    from pliant.errors import PliantError
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the loop, which says goodbye
     try:
         server = PageServer(host, port)
