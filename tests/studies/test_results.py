@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
+import random
 import re
-import time
 from pathlib import Path
 
 import pyarrow as pa
@@ -23,9 +24,10 @@ REQUEST = Request("toy", ("fine", "physics"), 2, ("gains.a=0.3",))
 
 def _written(folder: Path) -> ResultStore:
     asked = asked_runs(REQUEST)
-    with ResultStore(folder, REQUEST, asked) as store:
-        for run in sweep("toy", asked):
-            store.add(run)
+    store = ResultStore(folder, REQUEST, asked)
+    store.begin()
+    for run in sweep("toy", asked):
+        store.add(run)
     return store
 
 
@@ -38,19 +40,19 @@ def test_runs_come_back_bit_for_bit(tmp_path: Path) -> None:
     assert type(runs[0].result.config) is toy.ToyConfig
 
 
-def test_a_run_is_in_the_file_within_a_second_though_no_other_follows(tmp_path: Path) -> None:
+def test_a_run_is_in_the_file_as_soon_as_it_was_added(tmp_path: Path) -> None:
     asked = asked_runs(REQUEST)
-    with ResultStore(tmp_path, REQUEST, asked) as store:
-        store.add(next(sweep("toy", asked)))
-        time.sleep(1.4)
-        assert len(read_results(tmp_path)[1]) == 1
+    store = ResultStore(tmp_path, REQUEST, asked)
+    store.begin()
+    for number, run in enumerate(sweep("toy", asked)):
+        assert len(read_results(tmp_path)[1]) == number
+        store.add(run)
 
 
 def test_a_study_started_anew_keeps_what_an_earlier_one_found(tmp_path: Path) -> None:
     rows = len(_written(tmp_path).runs)
     for _ in range(2):  # the second time the file is empty: it does not push the first one out
-        with ResultStore(tmp_path, REQUEST, asked_runs(REQUEST)):
-            pass
+        ResultStore(tmp_path, REQUEST, asked_runs(REQUEST)).begin()
     assert pq.read_table(tmp_path / FILE).num_rows == 0
     assert pq.read_table(tmp_path / f"{FILE}.old").num_rows == rows > 0
 
@@ -75,3 +77,61 @@ def test_what_cannot_be_resumed_is_refused_in_a_sentence(tmp_path: Path, monkeyp
     monkeypatch.setattr(parquet, "__version__", "0.0.9")
     _written(tmp_path)
     assert re.search(r"written by pliant 0\.0\.9, this is pliant \d", _refused(tmp_path))
+
+
+def test_a_flipped_bit_or_a_cut_is_a_sentence_or_changes_nothing(tmp_path: Path) -> None:
+    _written(tmp_path)
+    whole, draw = (tmp_path / FILE).read_bytes(), random.Random(7)
+    before = repr(read_results(tmp_path))
+    refused: list[str] = []
+    for number in range(300):
+        damaged = bytearray(whole)
+        if number % 3:
+            damaged[draw.randrange(len(whole))] ^= 1 << draw.randrange(8)
+        else:
+            del damaged[draw.randrange(len(whole)) :]
+        (tmp_path / FILE).write_bytes(damaged)
+        try:
+            assert repr(read_results(tmp_path)) == before
+        except PliantError as error:
+            refused.append(str(error))
+    assert len(refused) > 150
+    assert all(len(text.splitlines()) == 1 for text in refused)
+
+
+EDITS = {
+    "status": "done",
+    "failure": "it fell over, says who",
+    "seed": 99,
+    "case": "physics",
+    "configuration": "{}",
+    "result": "[]",
+    "warnings": None,
+    "wall [s]": None,
+}
+
+
+@pytest.mark.parametrize("column", EDITS)
+def test_an_edited_row_is_refused_in_a_sentence(column: str, tmp_path: Path) -> None:
+    _written(tmp_path)
+    table = pq.read_table(tmp_path / FILE)
+    edited = table.to_pylist()
+    edited[0][column] = EDITS[column]
+    pq.write_table(pa.Table.from_pylist(edited, table.schema), tmp_path / FILE)
+    assert "does not hold the results of a study" in _refused(tmp_path)
+    pq.write_table(table.drop([column]), tmp_path / FILE)
+    assert "does not hold the results of a study" in _refused(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "change", [{"study": 1}, {"cases": 5}, {"seeds": "many"}, {"assignments": [3]}, {"logs": None}]
+)
+def test_an_edited_request_is_refused_in_a_sentence(change: dict[str, object], tmp_path: Path) -> None:
+    _written(tmp_path)
+    table = pq.read_table(tmp_path / FILE)
+    about = json.loads(table.schema.metadata[b"pliant"]) | change
+    pq.write_table(table.replace_schema_metadata({"pliant": json.dumps(about)}), tmp_path / FILE)
+    assert "does not hold the results of a study" in _refused(tmp_path)
+    about |= {"study": "toy", "cases": [], "seeds": 10**23, "assignments": [], "logs": False}
+    pq.write_table(table.replace_schema_metadata({"pliant": json.dumps(about)}), tmp_path / FILE)
+    assert "seeds" in _refused(tmp_path)

@@ -48,7 +48,7 @@ def test_two_processes_give_the_same_rows(alone: Path, tmp_path: Path) -> None:
 
 
 @contextmanager
-def cluster(workers: int) -> Iterator[str]:
+def cluster(workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
     """A dask scheduler and its workers, each a process of its own."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -65,7 +65,7 @@ def cluster(workers: int) -> Iterator[str]:
         except OSError:
             time.sleep(0.1)
     try:
-        yield address
+        yield address, started
     finally:
         for process in reversed(started):
             process.terminate()
@@ -74,7 +74,7 @@ def cluster(workers: int) -> Iterator[str]:
 
 @pytest.fixture
 def scheduler() -> Iterator[str]:
-    with cluster(2) as address:
+    with cluster(2) as (address, _):
         yield address
 
 
@@ -84,24 +84,28 @@ def test_a_cluster_gives_the_same_rows(alone: Path, tmp_path: Path, scheduler: s
     assert content(tmp_path) == content(alone)
 
 
-@pytest.mark.parametrize("deaf", [False, True])
-def test_a_scheduler_that_does_not_answer_is_one_sentence(deaf: bool, tmp_path: Path) -> None:
-    with socket.socket() as port:
-        port.bind(("127.0.0.1", 0))
-        if deaf:
-            port.listen()
-        code, _, errors = study("toy", "--scheduler", f"tcp://127.0.0.1:{port.getsockname()[1]}", "--out", tmp_path)
-    assert code == 2
-    assert "no dask scheduler answers" in errors
-    assert len(errors.strip().splitlines()) == 1
-    assert not (tmp_path / "results.parquet").exists()
-
-
 def test_a_scheduler_without_workers_is_one_sentence(tmp_path: Path) -> None:
-    with cluster(0) as address:
+    with cluster(0) as (address, _):
         code, _, errors = study("toy", "--scheduler", address, "--out", tmp_path)
     assert code == 2, errors
     assert "has no workers" in errors
+    assert not (tmp_path / "results.parquet").exists()
+
+
+@pytest.mark.parametrize("victim", ["scheduler", "workers"])
+def test_a_cluster_that_dies_is_one_sentence_and_the_rows_are_kept(victim: str, tmp_path: Path) -> None:
+    with cluster(1) as (address, (scheduler, worker)):
+        process = start("toy", "--case", "slow", "--seeds", 400, "--scheduler", address, "--out", tmp_path)
+        _wait_for_rows(tmp_path)
+        (scheduler if victim == "scheduler" else worker).kill()
+        killed = time.monotonic()
+        _, errors = process.communicate(timeout=60)
+        assert time.monotonic() - killed < 30.0  # 15 s on a machine that does nothing else
+    assert process.returncode == 1, errors
+    assert f"{victim} " in errors
+    assert "is kept" in errors
+    assert len(errors.strip().splitlines()) == 1
+    assert 0 < rows(tmp_path).num_rows < 400
 
 
 def test_a_killed_worker_costs_nothing_but_a_run_that_always_kills_fails(tmp_path: Path) -> None:
@@ -114,16 +118,37 @@ def test_a_killed_worker_costs_nothing_but_a_run_that_always_kills_fails(tmp_pat
     assert "its process died" in rows(tmp_path / "out")["failure"].to_pylist()[-1]
 
 
+def _wait_for_rows(folder: Path, count: int = 1) -> None:
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline:
+        if (folder / "results.parquet").exists() and pq.read_table(folder / "results.parquet").num_rows >= count:
+            return
+        time.sleep(0.05)
+
+
+def test_a_killed_command_loses_the_running_runs_only_and_a_second_one_is_told_who_holds_the_folder(
+    tmp_path: Path,
+) -> None:
+    process = start("toy", "--case", "slow", "--seeds", 10, "--jobs", 2, "--out", tmp_path)
+    _wait_for_rows(tmp_path, 2)
+    code, _, errors = study("--resume", tmp_path)
+    assert code == 2
+    assert f"in use by process {process.pid} (`pliant study toy" in errors
+    process.kill()
+    process.communicate()
+    before = rows(tmp_path)["seed"].to_pylist()
+    assert len(before) >= 2
+    code, _, errors = study("--resume", tmp_path, "--jobs", 2)
+    assert code == 0, errors
+    assert rows(tmp_path)["seed"].to_pylist() == list(range(10))
+
+
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_an_interrupted_study_is_resumed_to_the_same_table(jobs: int, tmp_path: Path) -> None:
     cases = ("toy", "--case", "slow", "--seeds", "24")
     folder = tmp_path / "cut"
     process = start(*cases, "--jobs", jobs, "--out", folder, start_new_session=True)
-    deadline = time.monotonic() + 60.0
-    while time.monotonic() < deadline:
-        if (folder / "results.parquet").exists() and pq.read_table(folder / "results.parquet").num_rows > 0:
-            break
-        time.sleep(0.05)
+    _wait_for_rows(folder)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
     out, errors = process.communicate(timeout=60)
     assert process.returncode == 130, errors

@@ -26,11 +26,12 @@ _REQUIRED = (
     "matplotlib",
     "mcap",
     "mcap-ros2-support",
-    "distributed",
+    "pyarrow",
 )
 _OPTIONAL = {
     "example-robot-data": "more robots: pip install 'pliant[robots]'",
     "crocoddyl": "second solver for predictive controllers: pip install 'pliant[crocoddyl]'",
+    "distributed": "sweeps on a cluster: pip install 'pliant[cluster]'",
     "mim-solvers": "second solver for predictive controllers: pip install 'pliant[crocoddyl]'",
 }
 _COMPILED = ("_impedance", "_contact", "_mpc")

@@ -12,6 +12,7 @@ from pliant.cli.progress import count_bar
 from pliant.cli.report import print_results, save_summary, summarised
 from pliant.errors import ConfigError, RunFailedError
 from pliant.experiments.base import CaseConfig, Result, Study
+from pliant.experiments.lock import locked
 from pliant.experiments.pool import open_pool
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, ResultStore, Run, key, read_results, unsettled
@@ -32,7 +33,9 @@ def study_command(
         RunFailedError: every run failed.
     """
     asked = asked_runs(request)
-    _run(console, complain, request, asked, [], out or Path("pliant-out") / request.study, jobs, scheduler)
+    folder = output_folder(out or Path("pliant-out") / request.study)
+    with locked(folder):
+        _run(console, complain, request, asked, [], folder, jobs, scheduler)
 
 
 def resume_command(
@@ -46,6 +49,13 @@ def resume_command(
     """
     if not folder.is_dir():
         raise ConfigError(f"--resume needs the folder of a study that was begun, got {folder}, which is not a folder")
+    with locked(output_folder(folder)):
+        _resume(console, complain, folder, study, jobs, scheduler)
+
+
+def _resume(
+    console: Console, complain: Console, folder: Path, study: str | None, jobs: int, scheduler: str | None
+) -> None:
     request, runs = read_results(folder)
     if study not in (None, request.study):
         raise ConfigError(f"{folder} holds results of study {request.study!r}, not of {study!r}")
@@ -62,23 +72,24 @@ def _run(
     request: Request,
     asked: Sequence[CaseConfig],
     before: Sequence[Run],
-    out: Path,
+    folder: Path,
     jobs: int,
     scheduler: str | None,
 ) -> None:
     study, rest = get_study(request.study), unsettled(asked, before)
     if rest:
         check_buildable(request.study, rest[0])
-    folder = output_folder(out)
     store = ResultStore(folder, request, asked)
     store.add_before(before)
+    whole = False
     try:
         _sweep(complain, store, request, rest, folder, min(jobs, max(len(rest), 1)), scheduler)
+        whole = True
     except KeyboardInterrupt:
         raise KeyboardInterrupt(_how_to_resume(store, len(asked), folder)) from None
     finally:
         if store.runs:
-            _finish(console, study, [run.result for run in store.runs], folder, store.path)
+            _finish(console, study, [run.result for run in store.runs], folder, store.path, figures=whole)
     results = [run.result for run in store.runs]
     if all(result.failure is not None for result in results):
         raise RunFailedError(f"all {len(results)} runs failed; the first: {results[0].failure}")
@@ -96,9 +107,9 @@ def _sweep(
     done = len(store.runs)
     with (
         open_pool(jobs, scheduler) as pool,
-        store,
         count_bar(complain, f"study {request.study}", done + len(rest), done) as step,
     ):
+        store.begin()
         for run in sweep(request.study, rest, folder, pool=pool, logs=request.logs):
             store.add(run)
             step(run.result.failure is not None)
@@ -108,13 +119,16 @@ def _how_to_resume(store: ResultStore, total: int, folder: Path) -> str:
     return f"{len(store.runs)} of {total} runs are kept; go on with: pliant study --resume {folder}"
 
 
-def _finish(console: Console, study: Study[Any], results: Sequence[Result], folder: Path, table: Path) -> None:
+def _finish(
+    console: Console, study: Study[Any], results: Sequence[Result], folder: Path, table: Path, *, figures: bool
+) -> None:
+    """Writes and prints what all runs say together; whoever interrupted does not want to wait for figures."""
     summary = save_summary(study, results, folder)
     report = folder / "report.md"
     parts = (f"# {study.title}\n", study.report(results), summary_markdown(summarised(study, results)))
     write_text(report, "\n".join(part for part in parts if part))
     print_results(console, study, results)
-    figures = study.summary_figures(results, folder)
+    drawn = study.summary_figures(results, folder) if figures else []
     files = [("summary", summary), ("report", report), ("results", table)]
-    for kind, path in [*files, *(("figure", figure) for figure in figures)]:
+    for kind, path in [*files, *(("figure", figure) for figure in drawn)]:
         console.print(f"{kind:8s} {path}", markup=False, highlight=False, soft_wrap=True)

@@ -16,6 +16,7 @@ from rich.table import Table
 from pliant import __version__
 from pliant.cli.progress import count_bar
 from pliant.experiments.config import merged, parse_assignments
+from pliant.experiments.lock import locked
 from pliant.experiments.parquet import write_parquet
 from pliant.experiments.pool import open_pool
 from pliant.experiments.registry import get_study
@@ -51,23 +52,18 @@ def tune_command(
     check_buildable(name, merged(tuning.runs[0], tuning.changes(tuning.start)))
     folder = output_folder(out or Path("pliant-out") / f"{name}-tune-{controller}")
     made: list[Trial] = []
-    try:
-        with open_pool(jobs, scheduler) as pool, count_bar(complain, f"tune {name} {controller}", trials) as step:
-            for trial in search(name, tuning, trials, seed=seed, pool=pool):
-                made.append(trial)
-                step(trial.failed > 0)
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"the best of {len(made)} of {trials} trials is kept in {folder}") from None
-    finally:
-        if made:
-            about = {
-                "study": name,
-                "controller": controller,
-                "case": case,
-                "seed": seed,
-                "assignments": list(assignments),
-            }
-            _finish(console, tuning, made, about, folder)
+    about = {"study": name, "controller": controller, "case": case, "seed": seed, "assignments": list(assignments)}
+    with locked(folder):
+        try:
+            with open_pool(jobs, scheduler) as pool, count_bar(complain, f"tune {name} {controller}", trials) as step:
+                for trial in search(name, tuning, trials, seed=seed, pool=pool):
+                    made.append(trial)
+                    step(trial.failed > 0)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(f"the best of {len(made)} of {trials} trials is kept in {folder}") from None
+        finally:
+            if made:
+                _finish(console, tuning, made, about, folder)
 
 
 def _finish(console: Console, tuning: Tuning, made: Sequence[Trial], about: Mapping[str, Any], folder: Path) -> None:

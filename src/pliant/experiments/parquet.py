@@ -33,7 +33,7 @@ def write_parquet(path: Path, table: pa.Table, about: Mapping[str, Any]) -> None
     marked = table.replace_schema_metadata({_KEY: json.dumps({**about, "version": __version__}, ensure_ascii=False)})
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        pq.write_table(marked, beside, compression="zstd")
+        pq.write_table(marked, beside, compression="zstd", write_page_checksum=True)
         os.replace(beside, path)
     except OSError as error:
         beside.unlink(missing_ok=True)
@@ -57,12 +57,14 @@ def read_parquet(path: Path) -> tuple[pa.Table, dict[str, Any]]:
     except OSError as error:
         raise OutputError(f"{path} cannot be read: {error.strerror or error}") from None
     try:
-        table = pq.read_table(pa.BufferReader(data))
+        # no threads of pyarrow's: one that still holds `data` when Python ends brings the process down
+        with pq.ParquetFile(pa.BufferReader(data), pre_buffer=False, page_checksum_verification=True) as file:
+            table = file.read(use_threads=False)
         metadata: dict[bytes, bytes] = table.schema.metadata or {}
         about = json.loads(metadata.get(_KEY, b"null"))
-    except (pa.ArrowException, OSError, ValueError) as error:
-        first = str(error).splitlines()[0].rstrip(".")
+    except (pa.ArrowException, OSError, ValueError, OverflowError, MemoryError) as error:
+        first = (str(error) or type(error).__name__).splitlines()[0].rstrip(".")
         raise OutputError(f"{path} is not a whole Parquet file: {first}") from None
-    if not isinstance(about, dict) or "version" not in about:
+    if not isinstance(about, dict) or not isinstance(about.get("version"), str):
         raise OutputError(f"{path} is a Parquet file, but not one of pliant's: its schema has no metadata 'pliant'")
     return table, about

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-import threading
-import time
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+from pydantic import TypeAdapter
 
 from pliant import __version__
 from pliant.errors import ConfigError, OutputError
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 FILE = "results.parquet"
 Status = Literal["finished", "failed", "crashed", "lost"]
 """failed: by physics; crashed: an exception stopped it; lost: its process died again and again"""
-_PAUSE = 1.0  # s between two writings: a thousand short runs must not write the file a thousand times
+_NAMES = ("case", "controller", "variant", "seed")
+_METRICS = TypeAdapter(tuple[Metric, ...])
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,8 @@ class Request:
 
 
 class ResultStore:
-    """Keeps the runs of a sweep in `results.parquet`. A context manager: what was added is in the file at its end.
-
-    The file is written at most once a second, by a timer if no further run comes, so that a killed process loses at
-    most the last second.
-    """
+    """Keeps the runs of a sweep in `results.parquet`, which is written whole after every run: a command that is killed
+    loses none that had ended."""
 
     def __init__(self, folder: Path, request: Request, asked: Sequence[CaseConfig]) -> None:
         """
@@ -75,56 +73,36 @@ class ResultStore:
         self._request = request
         self._place = {key(config): index for index, config in enumerate(asked)}
         self._runs: dict[int, Run] = {}
-        self._lock = threading.Lock()
-        self._written = -math.inf
-        self._timer: threading.Timer | None = None
+        self._rows: dict[int, dict[str, Any]] = {}
 
     @property
     def runs(self) -> list[Run]:
         """What was added, in the order in which it was asked for."""
         return [self._runs[place] for place in sorted(self._runs)]
 
-    def __enter__(self) -> ResultStore:
-        if not self._runs and _holds_rows(
-            self.path
-        ):  # a study that is started anew must not eat what an earlier one found
-            self.path.replace(self.path.with_suffix(".parquet.old"))
-        self.flush()  # even a sweep that is interrupted before its first result can be resumed
-        return self
+    def begin(self) -> None:
+        """Writes the file before the first run: even a sweep that is interrupted before it can be resumed.
 
-    def __exit__(self, *_: object) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-        self.flush()
+        Raises:
+            OutputError: it cannot be written.
+        """
+        if not self._runs and _holds_rows(self.path):  # a study that is started anew must not eat an earlier one's
+            self.path.replace(self.path.with_suffix(".parquet.old"))
+        self._write()
 
     def add_before(self, runs: Iterable[Run]) -> None:
         """Adds runs of an earlier sweep, without writing the file."""
-        with self._lock:
-            self._runs |= {self._place[key(run.result.config)]: run for run in runs}
+        for run in runs:
+            place = self._place[key(run.result.config)]
+            self._runs[place], self._rows[place] = run, _row(self._request.study, run, self.path.parent)
 
     def add(self, run: Run) -> None:
-        """Adds a run; it is in the file within a second. Raises OutputError if it cannot be written."""
+        """Adds a run; it is in the file when this returns. Raises OutputError if it cannot be written."""
         self.add_before([run])
-        left = self._written + _PAUSE - time.monotonic()
-        if left <= 0.0:
-            self.flush()
-        elif self._timer is None or not self._timer.is_alive():
-            self._timer = threading.Timer(left, self._flush_later)
-            self._timer.daemon = True
-            self._timer.start()
+        self._write()
 
-    def flush(self) -> None:
-        """Writes the file now. Raises OutputError if it cannot be written."""
-        with self._lock:
-            self._written = time.monotonic()
-            rows = [_row(self._request.study, run, self.path.parent) for run in self.runs]
-            write_parquet(self.path, _table(rows), asdict(self._request))
-
-    def _flush_later(self) -> None:
-        try:
-            self.flush()
-        except OutputError:
-            self._written = -math.inf  # the next `add`, or the end, tries again where the error is seen
+    def _write(self) -> None:
+        write_parquet(self.path, _table([self._rows[place] for place in sorted(self._rows)]), asdict(self._request))
 
 
 def _holds_rows(path: Path) -> bool:
@@ -162,11 +140,12 @@ def read_results(path: Path) -> tuple[Request, list[Run]]:
         )
     try:
         about |= {name: tuple(about[name]) for name in ("cases", "assignments")}
-        request = Request(**about)
+        request = TypeAdapter(Request).validate_python(about)
         kind = type(next(iter(get_study(request.study).cases.values())))
         return request, [_run(row, kind, path.parent) for row in table.to_pylist()]
-    except (KeyError, TypeError, ValueError, ConfigError) as error:
-        raise OutputError(f"{path} does not hold the results of a study ({type(error).__name__}: {error})") from None
+    except Exception as error:  # an edited or damaged file may hold anything
+        why = " ".join(str(error).split())
+        raise OutputError(f"{path} does not hold the results of a study ({type(error).__name__}: {why})") from None
 
 
 def _table(rows: Sequence[dict[str, Any]]) -> pa.Table:
@@ -212,13 +191,20 @@ def _row(study: str, run: Run, folder: Path) -> dict[str, Any]:
 
 
 def _run(row: dict[str, Any], kind: type[CaseConfig], folder: Path) -> Run:
+    """Raises whatever it meets where a row is not as `_row` makes it."""
     exact = json.loads(row["result"])
-    metrics = tuple(Metric(**metric | {"value": float(metric["value"])}) for metric in exact["metrics"])
     log = None if exact["log"] is None else folder / exact["log"]
     figures = tuple(folder / name for name in exact["figures"])
     config = kind.model_validate_json(row["configuration"])
-    result = Result(config, metrics, row["failure"], tuple(row["warnings"]), log, figures)
-    return Run(result, row["status"], row["wall [s]"])
+    said, is_ = ([row[name] for name in _NAMES], [config.case, config.controller, config.variant, config.seed])
+    if said != is_:
+        raise ValueError(f"the row of {said} has the configuration of {is_}")
+    if row["status"] not in get_args(Status) or (row["status"] == "finished") != (row["failure"] is None):
+        raise ValueError(f"status {row['status']!r} with failure {row['failure']!r}")
+    result = Result(
+        config, _METRICS.validate_python(exact["metrics"]), row["failure"], tuple(row["warnings"]), log, figures
+    )
+    return Run(result, row["status"], float(row["wall [s]"]))
 
 
 def _column(metric: Metric) -> str:

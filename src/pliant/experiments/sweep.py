@@ -1,4 +1,4 @@
-"""Many runs: one after the other, side by side in processes, or on a dask cluster."""
+"""Many runs: one after the other, side by side in processes, or on a cluster."""
 
 from __future__ import annotations
 
@@ -8,13 +8,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pliant.errors import PliantError
+from pliant.errors import ConfigError, PliantError
 from pliant.experiments.base import CaseConfig, Result
 from pliant.experiments.config import merged, parse_assignments
 from pliant.experiments.pool import Lost, Pool, in_this_process
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, Run, key
 from pliant.experiments.runner import run_case
+
+MOST_SEEDS = 100_000
+"""seeds per case of one sweep: more is a slip of the keyboard"""
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,8 @@ def asked_runs(request: Request) -> list[CaseConfig]:
         ConfigError: an unknown study, case or key, or a value that breaks a rule.
     """
     study = get_study(request.study)
+    if request.seeds is not None and not 1 <= request.seeds <= MOST_SEEDS:
+        raise ConfigError(f"a sweep takes 1 to {MOST_SEEDS} seeds per case, got {request.seeds}")
     changes = parse_assignments(request.assignments)
     cases = request.cases or tuple(study.cases)
     runs = [merged(config, changes) for case in cases for config in study.runs(case, request.seeds)]

@@ -1,0 +1,191 @@
+"""Tasks done by the workers of a running dask scheduler. A server that is something else, or that goes away, is one
+sentence."""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+import struct
+import threading
+import time
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pliant import __version__
+from pliant.errors import ConfigError, MissingExtraError, RunFailedError
+from pliant.experiments.pool import Lost, Pool
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+T = TypeVar("T")
+R = TypeVar("R")
+_KNOCK, _ANSWER = 2.0, 3.0  # s for a scheduler's port to say what it is, and for the scheduler to answer
+_WORKERS = 8.0  # s for the first worker to report: they may have been started together with the scheduler
+_LOOK = 0.2  # s between two looks for Ctrl-C
+_ALIVE, _GONE = 2.0, 8.0  # s between two looks whether scheduler and workers are there, and until they count as gone
+_GREETING = range(16, 1 << 16)  # bytes of dask's first message
+
+
+@contextmanager
+def connected(scheduler: str, interrupted: threading.Event) -> Generator[Pool]:
+    """A pool of a scheduler's workers.
+
+    Args:
+        scheduler: its address, `tcp://HOST:PORT`.
+        interrupted: set when the user asked to stop: what ended is handed out, then KeyboardInterrupt is raised.
+
+    Raises:
+        ConfigError: what is there does not answer as a dask scheduler does, has no workers, or another pliant.
+        MissingExtraError: dask is not installed.
+    """
+    host, port = _address(scheduler)
+    try:
+        from distributed import Client
+    except ImportError:
+        raise MissingExtraError(
+            "--scheduler needs dask's `distributed`, which is not installed: pip install 'pliant[cluster]'"
+        ) from None
+    _quiet()
+    try:
+        _knock(host, port)
+        client = Client(scheduler, timeout=_ANSWER, set_as_default=False)
+    except Exception as error:  # whatever dask makes of a server that is something else
+        why = str(error).partition("\n")[0] or type(error).__name__
+        raise ConfigError(f"no dask scheduler answers at {scheduler} ({why}); `dask scheduler` starts one") from None
+    try:
+        try:
+            client.wait_for_workers(1, timeout=_WORKERS)
+        except TimeoutError:
+            raise ConfigError(
+                f"the dask scheduler {scheduler} has no workers; `dask worker {scheduler}` starts some"
+            ) from None
+        _check_versions(client, scheduler)
+        yield _DaskPool(client, scheduler, interrupted)
+    finally:
+        with suppress(TimeoutError):  # nobody is there to say goodbye to
+            client.close(timeout=_KNOCK)
+
+
+class _DaskPool:
+    def __init__(self, client: Client, scheduler: str, interrupted: threading.Event) -> None:
+        self._client, self._scheduler, self._interrupted = client, scheduler, interrupted
+        self._seen = self._looked = 0.0
+
+    def __call__(self, function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
+        ended: SimpleQueue[Future[Any]] = SimpleQueue()
+        waiting: dict[object, tuple[int, Future[Any]]] = {}  # a future that nobody holds is forgotten by the scheduler
+        for index, task in enumerate(tasks):
+            future = self._client.submit(function, task, pure=False)
+            waiting[future.key] = index, future
+            future.add_done_callback(ended.put)
+        self._seen = time.monotonic()
+        try:
+            while waiting:
+                future = self._next(ended)
+                index, _ = waiting.pop(future.key)
+                yield index, self._outcome(future)
+        finally:
+            if waiting and self._client.status == "running":
+                self._client.cancel([future for _, future in waiting.values()], force=True)
+
+    def _next(self, ended: SimpleQueue[Future[Any]]) -> Future[Any]:
+        """The next task that ended. Ctrl-C counts once everything that ended was handed out."""
+        while True:
+            try:
+                return ended.get(timeout=0.001 if self._interrupted.is_set() else _LOOK)
+            except Empty:
+                if self._interrupted.is_set():
+                    raise KeyboardInterrupt from None
+            self._check_alive()
+
+    def _outcome(self, future: Future[Any]) -> Any:
+        """What a task returned. A task whose worker dies is started again by the scheduler, three times."""
+        from distributed import KilledWorker
+
+        if future.status == "cancelled":
+            raise self._gone("the dask scheduler", "went away")
+        error = future.exception()
+        if error is None:
+            return future.result()
+        if isinstance(error, KilledWorker):
+            return Lost(f"its process died, {error.allowed_failures + 1} times in a row")
+        return Lost(f"the worker could not run it: {type(error).__name__}: {error}")
+
+    def _check_alive(self) -> None:
+        """Raises RunFailedError if the scheduler or all its workers have not been there for a while."""
+        now = time.monotonic()
+        if now < self._looked + _ALIVE:
+            return
+        workers = None
+        if self._client.status == "running":
+            try:
+                ask: Any = self._client.scheduler
+                workers = len(self._client.sync(ask.identity, callback_timeout=_ALIVE)["workers"])
+            except Exception:  # a connection that breaks ends in many ways
+                workers = None
+        self._looked = time.monotonic()
+        if workers:
+            self._seen = self._looked
+        elif self._looked > self._seen + _GONE:
+            what = "the dask scheduler" if workers is None else "all workers of the dask scheduler"
+            raise self._gone(what, "went away")
+
+    def _gone(self, what: str, happened: str) -> RunFailedError:
+        return RunFailedError(f"{what} {self._scheduler} {happened}; what had ended until then is kept")
+
+
+def _address(scheduler: str) -> tuple[str, int]:
+    scheme, _, rest = scheduler.partition("://")
+    host, _, port = rest.rpartition(":")
+    if scheme != "tcp" or not host or not port.isascii() or not port.isdecimal() or not 0 < int(port[:6]) < 1 << 16:
+        raise ConfigError(f"a scheduler's address is written tcp://HOST:PORT, got {scheduler!r}")
+    return host.strip("[]"), int(port)
+
+
+def _knock(host: str, port: int) -> None:
+    """Raises OSError unless what listens there speaks first, in the way dask does: dask's own client would wait long
+    for anything else, or believe any length that it is told."""
+    until = time.monotonic() + _KNOCK
+    with socket.create_connection((host, port), timeout=_KNOCK) as line:
+        (length,) = struct.unpack("<Q", _received(line, 8, until))
+        if length not in _GREETING or b"pickle-protocol" not in _received(line, length, until):
+            raise ConnectionError("what listens there is something else")
+
+
+def _received(line: socket.socket, count: int, until: float) -> bytes:
+    data = b""
+    while len(data) < count:
+        line.settimeout(max(until - time.monotonic(), 1e-3))
+        part = line.recv(count - len(data))
+        if not part:
+            raise ConnectionError("what listens there is something else")
+        data += part
+    return data
+
+
+def _check_versions(client: Client, scheduler: str) -> None:
+    try:
+        found: dict[str, str] = client.run(_version)  # pyright: ignore[reportAssignmentType] (not a coroutine here)
+    except Exception as error:  # whatever a foreign worker makes of it
+        raise ConfigError(
+            f"the workers of {scheduler} cannot import pliant {__version__}: {type(error).__name__}: {error}"
+        ) from None
+    for worker, version in found.items():
+        if version != __version__:
+            raise ConfigError(f"worker {worker} of {scheduler} has pliant {version}, this is pliant {__version__}")
+
+
+def _version() -> str:
+    return __version__
+
+
+def _quiet() -> None:
+    """Dask's log goes to standard error, amid the progress bar: what matters of it is in our own sentences."""
+    names = ("distributed", "distributed.client", "distributed.core", "distributed.comm", "tornado.application")
+    for name in names:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # workers read it when they start

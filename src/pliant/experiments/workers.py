@@ -1,0 +1,203 @@
+"""Processes of this machine that do tasks, one each at a time. One that dies is replaced, and costs only its task.
+
+`concurrent.futures` gives every task up when one process dies; here each process has a pipe of its own, so that it is
+known which task it had.
+"""
+
+from __future__ import annotations
+
+import multiprocessing as mp
+import os
+import pickle
+import signal
+import threading
+from collections import Counter, deque
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection, wait
+from typing import Any, TypeVar
+
+from pliant.errors import RunFailedError
+from pliant.experiments.pool import Lost, Pool
+
+T = TypeVar("T")
+R = TypeVar("R")
+DEATHS = 3
+"""how often a task may take its process with it before it counts as lost"""
+_LOOK = 0.2  # s between two looks for Ctrl-C
+
+
+@contextmanager
+def local_workers(jobs: int, interrupted: threading.Event) -> Generator[Pool]:
+    """A pool of processes, which are started when there is work for them and end with it.
+
+    Args:
+        jobs: how many processes.
+        interrupted: set when the user asked to stop: what ended is handed out, then KeyboardInterrupt is raised.
+    """
+    crew = _Crew(jobs, interrupted)
+    try:
+        yield crew
+    finally:
+        crew.dismiss()
+
+
+class _Crew:
+    def __init__(self, jobs: int, interrupted: threading.Event) -> None:
+        self._jobs, self._interrupted = jobs, interrupted
+        self._workers: dict[Connection, _Worker] = {}
+        self._stillborn = 0  # processes in a row that died without having had a task
+
+    def __call__(self, function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
+        """Raises RunFailedError if no process can be started, KeyboardInterrupt after Ctrl-C."""
+        waiting, deaths = deque(range(len(tasks))), Counter[int]()
+        left = len(tasks)
+        try:
+            while left:
+                self._employ(waiting, function, tasks, left)
+                for worker in self._listen():
+                    index, answer = worker.task, worker.hear()
+                    if answer is not None:
+                        self._stillborn = 0
+                        worker.task = None
+                        self._employ(waiting, function, tasks, left)  # it works on while the answer is dealt with
+                    else:
+                        how = self._bury(worker)
+                        if index is None:
+                            self._check_birth(how)
+                        else:
+                            deaths[index] += 1
+                            answer = self._again(index, waiting, deaths[index], how)
+                    if index is not None and answer is not None:
+                        left -= 1
+                        yield index, answer.content
+        finally:
+            for worker in [worker for worker in self._workers.values() if worker.task is not None]:
+                self._bury(worker)
+
+    def dismiss(self) -> None:
+        """Ends all processes."""
+        for worker in list(self._workers.values()):
+            self._bury(worker)
+
+    def _employ(self, waiting: deque[int], function: Callable[[T], R], tasks: Sequence[T], left: int) -> None:
+        while len(self._workers) < min(self._jobs, left):
+            worker = _Worker()
+            self._workers[worker.pipe] = worker
+        for worker in self._workers.values():
+            if waiting and worker.ready and worker.task is None and not self._interrupted.is_set():
+                index = waiting.popleft()
+                worker.give(index, pickle.dumps((function, tasks[index])))
+
+    def _listen(self) -> list[_Worker]:
+        """The processes that have something to say, or died. Ctrl-C counts once all that ended was handed out."""
+        while True:
+            heard = wait(list(self._workers), timeout=0.0 if self._interrupted.is_set() else _LOOK)
+            if heard:
+                found = [self._workers[pipe] for pipe in heard if isinstance(pipe, Connection)]
+                if not self._interrupted.is_set() or any(worker.task is not None for worker in found):
+                    return found
+            if self._interrupted.is_set():
+                raise KeyboardInterrupt
+
+    def _again(self, index: int, waiting: deque[int], deaths: int, how: str) -> _Answer | None:
+        if deaths < DEATHS:
+            waiting.appendleft(index)
+            return None
+        return _Answer(Lost(f"its process died, {deaths} times in a row ({how})"))
+
+    def _check_birth(self, how: str) -> None:
+        self._stillborn += 1
+        if self._stillborn >= DEATHS * self._jobs:
+            raise RunFailedError(
+                f"no process for the runs can be started: {self._stillborn} ended at once ({how}); a script that sweeps"
+                " needs `if __name__ == '__main__':` around it; what had ended until then is kept"
+            )
+
+    def _bury(self, worker: _Worker) -> str:
+        del self._workers[worker.pipe]
+        return worker.end()
+
+
+class _Answer:
+    """What came back from a process; a class, since what a task returns may be None."""
+
+    def __init__(self, content: Any) -> None:
+        self.content = content
+
+
+class _Worker:
+    """A process, the pipe to it, and the task that it has."""
+
+    def __init__(self) -> None:
+        context = mp.get_context("spawn")  # no copy of this process's threads and locks
+        self.pipe, theirs = context.Pipe()
+        self.task: int | None = None
+        self.ready = False
+        self._process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        with _shielded():
+            self._process.start()
+        theirs.close()  # its end is now the only one: the pipe ends with the process
+
+    def give(self, index: int, message: bytes) -> None:
+        self.task = index
+        with suppress(OSError):  # it died while it had nothing to do: the pipe says so next
+            self.pipe.send_bytes(message)
+
+    def hear(self) -> _Answer | None:
+        """What it says; None if it died."""
+        try:
+            answer = pickle.loads(self.pipe.recv_bytes())
+        except (EOFError, OSError):
+            return None
+        self.ready = True
+        return _Answer(answer)
+
+    def end(self) -> str:
+        """Ends the process. Returns how it had ended by itself, if it had."""
+        if self.pipe.poll():  # its end is closed, or nobody wants to know any more: it is dying
+            self._process.join(1.0)
+        code = self._process.exitcode
+        self._process.kill()
+        self._process.join()
+        self.pipe.close()
+        return signal.Signals(-code).name if code is not None and code < 0 else f"exit code {code}"
+
+
+def _serve(pipe: Connection) -> None:
+    """What a process does: tasks, until its pipe ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal sends it to all; the command ends its processes itself
+    threading.Thread(target=_die_with_parent, daemon=True).start()
+    with suppress(EOFError, OSError):
+        pipe.send_bytes(pickle.dumps(None))
+        while True:
+            message = pipe.recv_bytes()
+            try:
+                function, task = pickle.loads(message)
+                answer = pickle.dumps(function(task))
+            except Exception as error:
+                answer = pickle.dumps(Lost(f"the worker could not run it: {type(error).__name__}: {error}"))
+            pipe.send_bytes(answer)
+
+
+def _die_with_parent() -> None:
+    parent = mp.parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
+
+
+@contextmanager
+def _shielded() -> Generator[None]:
+    """Processes started in here never see Ctrl-C, and compute on one thread each."""
+    resource_tracker.ensure_running()  # it would unblock the signal where it is started
+    threads = os.environ.get("OMP_NUM_THREADS")
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        if threads is None:
+            del os.environ["OMP_NUM_THREADS"]

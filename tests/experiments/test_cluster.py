@@ -1,0 +1,71 @@
+"""Servers that are something else than a dask scheduler."""
+
+from __future__ import annotations
+
+import random
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from pliant.errors import ConfigError
+from pliant.experiments.pool import open_pool
+
+GREETINGS = {
+    "silent": b"",
+    "one byte": b"x",
+    "ssh": b"SSH-2.0-OpenSSH_9.2\r\n",
+    "zeros": bytes(4096),
+    "a huge length": b"\xff" * 64,
+    "mysql": b"J\0\0\0\n8.0.33\0abc",
+    "http": b"HTTP/1.1 400 Bad Request\r\n\r\n",
+    "a length that fits": (64).to_bytes(8, "little") + bytes(64),
+    **{f"random {seed}": random.Random(seed).randbytes(5000) for seed in range(5)},
+}
+
+
+@contextmanager
+def _server(greeting: bytes) -> Iterator[str]:
+    with socket.create_server(("127.0.0.1", 0)) as door:
+        lines: list[socket.socket] = []
+
+        def serve() -> None:
+            try:
+                while True:
+                    line, _ = door.accept()
+                    lines.append(line)
+                    line.sendall(greeting)
+            except OSError:
+                return
+
+        threading.Thread(target=serve, daemon=True).start()
+        yield f"tcp://127.0.0.1:{door.getsockname()[1]}"
+        door.shutdown(socket.SHUT_RDWR)
+        for line in lines:
+            line.close()
+
+
+@pytest.mark.parametrize("kind", GREETINGS)
+def test_a_server_that_is_not_dask_is_one_sentence(kind: str) -> None:
+    with (
+        _server(GREETINGS[kind]) as address,
+        pytest.raises(ConfigError, match="no dask scheduler answers at") as caught,
+        open_pool(1, address),
+    ):
+        pass
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_port_where_nobody_listens_is_one_sentence() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as door:
+        address = f"tcp://127.0.0.1:{door.getsockname()[1]}"
+    with pytest.raises(ConfigError, match="no dask scheduler answers at"), open_pool(1, address):
+        pass
+
+
+@pytest.mark.parametrize("address", ["", "127.0.0.1:8786", "tls://a:1", "tcp://a", "tcp://a:99999999999", "tcp://a:²"])
+def test_an_address_is_written_in_one_way(address: str) -> None:
+    with pytest.raises(ConfigError, match="tcp://HOST:PORT"), open_pool(1, address):
+        pass
