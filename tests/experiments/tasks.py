@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import signal
+import time
 from pathlib import Path
 
 
@@ -25,3 +26,8 @@ def odd(task: str) -> object:
             mark.touch()
             os.kill(os.getpid(), signal.SIGKILL)
     return (lambda: 0) if task == "cannot be sent" else None
+
+
+def nap(task: float) -> float:
+    time.sleep(task)
+    return task

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,9 +13,11 @@ from pliant.errors import OutputError
 from pliant.experiments.lock import FILE, locked
 
 
-def test_the_second_is_told_who_holds_the_folder(tmp_path: Path) -> None:
+def test_the_second_is_told_who_holds_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["/somewhere/pliant", "study", "stack"])
     with locked(tmp_path):
-        with pytest.raises(OutputError, match=rf"in use by process {os.getpid()} \(`pliant "), locked(tmp_path):
+        holder = re.escape(f"in use by process {os.getpid()} (`pliant study stack`)")
+        with pytest.raises(OutputError, match=holder), locked(tmp_path):
             pass
         (tmp_path / FILE).write_text("[]")  # whatever stands there
         with pytest.raises(OutputError, match="in use by another process"), locked(tmp_path):

@@ -90,7 +90,8 @@ class _DaskPool:
                 yield index, self._outcome(future)
         finally:
             if waiting and self._client.status == "running":
-                self._client.cancel([future for _, future in waiting.values()], force=True)
+                with suppress(OSError, TimeoutError):  # nobody is there any more
+                    self._client.cancel([future for _, future in waiting.values()], force=True)
 
     def _next(self, ended: SimpleQueue[Future[Any]]) -> Future[Any]:
         """The next task that ended. Ctrl-C counts once everything that ended was handed out."""
@@ -108,9 +109,12 @@ class _DaskPool:
 
         if future.status == "cancelled":
             raise self._gone("the dask scheduler", "went away")
-        error = future.exception()
-        if error is None:
-            return future.result()
+        try:
+            error = future.exception()
+            if error is None:
+                return future.result()
+        except OSError:  # the connection broke while the answer was fetched
+            raise self._gone("the dask scheduler", "went away") from None
         if isinstance(error, KilledWorker):
             return Lost(f"its process died, {error.allowed_failures + 1} times in a row")
         return Lost(f"the worker could not run it: {type(error).__name__}: {error}")
@@ -123,8 +127,8 @@ class _DaskPool:
         workers = None
         if self._client.status == "running":
             try:
-                ask: Any = self._client.scheduler
-                workers = len(self._client.sync(ask.identity, callback_timeout=_ALIVE)["workers"])
+                client: Any = self._client  # its `scheduler` is untyped
+                workers = len(client.sync(client.scheduler.identity, callback_timeout=_ALIVE)["workers"])
             except Exception:  # a connection that breaks ends in many ways
                 workers = None
         self._looked = time.monotonic()
