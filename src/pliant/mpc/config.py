@@ -202,6 +202,10 @@ def _phases(track: Term, contact: Term, circle: Term) -> dict[str, Phase]:
         "contact": Phase(contact=True, translation=contact),
         "ramp": Phase(contact=True, translation=contact),
         "circle": Phase(contact=True, translation=circle),
+        "approach": Phase(translation=track),
+        "press": Phase(contact=True, translation=contact),
+        "follow": Phase(contact=True, translation=circle),
+        "leave": Phase(translation=track),
     }
 
 

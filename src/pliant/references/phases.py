@@ -1,51 +1,27 @@
-"""A task in phases, as data: reach, track, touch, press, draw; by timetable or by contact that is found."""
+"""Plays a task in phases: reach, track, touch, press, draw; by timetable or by contact that is found."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
-from pliant.errors import ConfigError, ShapeError
+from pliant.errors import ConfigError, RunFailedError
 from pliant.interfaces import ReferenceSource
-from pliant.references.trajectories.trajectory import Trajectory
+from pliant.references.landing import Height
+from pliant.references.task_phase import TaskPhase as TaskPhase
+from pliant.references.trajectories.rotation import Orientation
+from pliant.references.trajectories.trajectory import vector
 from pliant.robot import Robot
 from pliant.signals import Estimate, Preview, Reference, TaskReference
-from pliant.spatial import Array
+from pliant.spatial import Array, cross
 
-Anchor = Literal["world", "begin", "touch"]
-
-
-@dataclass(frozen=True)
-class TaskPhase:
-    """One phase of a task. Its trajectories count time from the start of the phase."""
-
-    name: str
-    motion: Trajectory
-    """(3,) m; what it is measured from says `anchor`"""
-    anchor: Anchor = "world"
-    """"world": absolute; "begin": from where the reference was when the phase began; "touch": from where the frame was
-    when the last phase in which `touches` is new began"""
-    wrench: Trajectory | None = None
-    """(6,) desired reaction of the environment, N and N·m; None for zero"""
-    duration: float = math.inf
-    """s"""
-    ends_on_contact: bool = False
-    """the phase lasts until the estimate says that the frame touches, whatever its duration"""
-    touches: bool = False
-    """the frame is in contact in this phase"""
-
-    def __post_init__(self) -> None:
-        if self.motion.size != 3:
-            raise ShapeError(f"the motion of phase {self.name!r} must have 3 entries, got {self.motion.size}")
-        if self.wrench is not None and self.wrench.size != 6:
-            raise ShapeError(f"the wrench of phase {self.name!r} must have 6 entries, got {self.wrench.size}")
-        if not self.duration > 0.0:
-            raise ConfigError(f"the duration of phase {self.name!r} must be above zero, got {self.duration}")
+_REMEMBERED = 1024  # instants
+_NO_WRENCH = vector(np.zeros(6), "no wrench")
 
 
 @dataclass(frozen=True)
@@ -71,6 +47,22 @@ class PhaseState:
     """(3,) m reference position at that time"""
     touch: Array
     """(3,) m where the frame was when contact began"""
+    height: Height = field(default_factory=Height)
+    """of the surface that was touched above the believed one"""
+
+
+class Said(NamedTuple):
+    """What a phase says at one instant, before it is anchored. Arrays are shared: do not write into them."""
+
+    position: Array
+    rotation: Array
+    velocity: Array
+    acceleration: Array
+    wrench: Array
+    axes: Array | None
+    normal: tuple[Array, Array, Array] | None
+    """the third of the axes and its first two time derivatives, (6,) each"""
+    posture: Array | None
 
 
 class PhasedSource(ReferenceSource[PhaseState]):
@@ -82,9 +74,9 @@ class PhasedSource(ReferenceSource[PhaseState]):
         robot: gives the frame's position, to anchor phases where contact was made.
         frame: the controlled frame.
         phases: in order; the last one holds.
-        rotation: R_world_frame (3, 3) throughout.
+        rotation: R_world_frame (3, 3) in phases that have none of their own.
         lookahead: of the preview; None for none.
-        posture: (n,) joint configuration that goes with the whole task, rad; None for none.
+        posture: (n,) rad, in phases that have none of their own; None for none.
 
     Raises:
         ConfigError: no phase, or two of one name.
@@ -104,9 +96,12 @@ class PhasedSource(ReferenceSource[PhaseState]):
         if not names or len(set(names)) < len(names):
             raise ConfigError(f"a task needs at least one phase and different names, got {names}")
         self.frame, self.phases, self.rotation, self.lookahead = frame, tuple(phases), rotation, lookahead
+        self._turning = any(phase.axes is not None for phase in phases)
         self._model, self._data = robot.model, robot.model.createData()
         self._frame_id = robot.frame_id(frame)
         self.posture = None if posture is None else robot.vector(posture, "the posture")
+        # a pure function; an instant that is in the preview of many ticks is worked out once
+        self._at = lru_cache(_REMEMBERED)(self._work_out)
 
     def init(self, estimate: Estimate) -> PhaseState:
         here = self._position(estimate.q)
@@ -115,11 +110,24 @@ class PhasedSource(ReferenceSource[PhaseState]):
     def step(self, estimate: Estimate, state: PhaseState) -> tuple[Reference, PhaseState]:
         state = self._advanced(estimate, state)
         now = self._task(state, estimate.time)
-        phase = self.phases[state.index].name
-        preview = self._preview(state, estimate.time)
-        return Reference(estimate.time, (now,), self.posture, phase, preview), state
+        phase, posture = self.phases[state.index].name, self._said(state, estimate.time).posture
+        return Reference(estimate.time, (now,), posture, phase, self._preview(state, estimate.time)), state
 
     # ------------------------------------------------------------------ inside
+
+    def _work_out(self, index: int, elapsed: float) -> Said:
+        phase = self.phases[index]
+        point, posture = phase.motion.at(elapsed), self.posture
+        rotation, velocity, acceleration = self.rotation, np.zeros(6), np.zeros(6)
+        velocity[:3], acceleration[:3] = point.rate, point.acceleration
+        if phase.rotation is not None:
+            rotation, velocity[3:], acceleration[3:] = phase.rotation.at(elapsed)
+        if phase.posture is not None:
+            posture = phase.posture.at(elapsed).value
+        axes = None if phase.axes is None else phase.axes.at(elapsed)
+        wrench = _NO_WRENCH if phase.wrench is None else phase.wrench.at(elapsed).value
+        normal, turned = (None, None) if axes is None else (_normal(axes), axes.rotation)
+        return Said(point.value, rotation, velocity, acceleration, wrench, turned, normal, posture)
 
     def _advanced(self, estimate: Estimate, state: PhaseState) -> PhaseState:
         """The phase of now, as the clock and the contact say."""
@@ -127,6 +135,8 @@ class PhasedSource(ReferenceSource[PhaseState]):
             phase = self.phases[state.index]
             if phase.ends_on_contact:
                 if not estimate.contacts.get(self.frame, False):
+                    if estimate.time - state.start > phase.patience:
+                        raise RunFailedError(self._missed(phase))
                     break
                 start = estimate.time
             else:
@@ -135,14 +145,44 @@ class PhasedSource(ReferenceSource[PhaseState]):
                     break
             touched = self.phases[state.index + 1].touches and not phase.touches
             after = self._next(state, start)
-            state = replace(after, touch=self._position(estimate.q)) if touched else after
+            state = self._landed(state, after, self._position(estimate.q)) if touched else after
         return state
+
+    def _landed(self, before: PhaseState, after: PhaseState, here: Array) -> PhaseState:
+        """The phase that begins with contact made at `here` (3,) m.
+
+        Raises:
+            RunFailedError: too far from where the surface was believed.
+        """
+        phase, landed = self.phases[after.index], self.phases[before.index]
+        if phase.anchor != "surface" or phase.axes is None:
+            return replace(after, touch=here)
+        normal = phase.axes.at(0.0).rotation[:, 2]
+        arriving = self._task(before, after.start)
+        found = float(normal @ (here - phase.motion.at(0.0).value))
+        if abs(found) > landed.within:
+            raise RunFailedError(
+                f"phase {landed.name!r}: contact was felt {1e3 * abs(found):.0f} mm"
+                f" {'above' if found > 0.0 else 'below'} the believed surface, more than the"
+                f" {1e3 * landed.within:.0f} mm within which it is looked for:"
+                " something stands in the way, the surface is elsewhere, or contact is believed too early"
+            )
+        gap = float(normal @ (arriving.position - here))
+        height = Height(after.start, found, gap, float(normal @ arriving.velocity[:3]))
+        return replace(after, touch=here, height=height)
+
+    def _missed(self, phase: TaskPhase) -> str:
+        return (
+            f"phase {phase.name!r} felt no contact of frame {self.frame!r} within {phase.patience:.2g} s: is the"
+            " surface lower than believed, further away than the phase searches, or is the threshold of contact too"
+            " high?"
+        )
 
     def _next(self, state: PhaseState, start: float) -> PhaseState:
         """The following phase, beginning at `start`; contact, if it is new, is expected where the reference is."""
         position = self._task(state, start).position
         new = self.phases[state.index + 1].touches and not self.phases[state.index].touches
-        return PhaseState(state.index + 1, start, position, position if new else state.touch)
+        return PhaseState(state.index + 1, start, position, position if new else state.touch, state.height)
 
     def _expected(self, state: PhaseState, time: float) -> PhaseState:
         """The phase of a later time, as far as it can be known now."""
@@ -154,14 +194,21 @@ class PhasedSource(ReferenceSource[PhaseState]):
         return state
 
     def _task(self, state: PhaseState, time: float) -> TaskReference:
-        phase = self.phases[state.index]
-        elapsed = max(time - state.start, 0.0)
-        point = phase.motion.at(elapsed)
-        offset = {"world": 0.0, "begin": state.begin, "touch": state.touch}[phase.anchor]
-        velocity, acceleration = np.zeros(6), np.zeros(6)
-        velocity[:3], acceleration[:3] = point.rate, point.acceleration
-        task = TaskReference(self.frame, point.value + offset, self.rotation, velocity, acceleration)
-        return task if phase.wrench is None else replace(task, wrench=phase.wrench.at(elapsed).value)
+        phase, said = self.phases[state.index], self._said(state, time)
+        offset = {"begin": state.begin, "touch": state.touch}.get(phase.anchor, 0.0)
+        position, velocity, acceleration = said.position + offset, said.velocity, said.acceleration
+        if phase.anchor == "surface" and said.normal is not None:
+            h, h_dot, h_ddot = state.height.at(time)
+            n, n_dot, n_ddot = said.normal
+            position, velocity, acceleration = position + h * n[:3], velocity + h * n_dot, acceleration + h * n_ddot
+            if h_dot or h_ddot:
+                velocity = velocity + h_dot * n
+                acceleration = acceleration + 2.0 * h_dot * n_dot + h_ddot * n
+        return TaskReference(self.frame, position, said.rotation, velocity, acceleration, said.wrench, None, said.axes)
+
+    def _said(self, state: PhaseState, time: float) -> Said:
+        """What the phase says, on its own clock; rounded, so that one instant seen from two ticks is one instant."""
+        return self._at(state.index, round(max(time - state.start, 0.0), 9))
 
     def _preview(self, state: PhaseState, time: float) -> Preview | None:
         if self.lookahead is None:
@@ -169,20 +216,35 @@ class PhasedSource(ReferenceSource[PhaseState]):
         times = time + self.lookahead.lead + self.lookahead.step * np.arange(self.lookahead.nodes + 1, dtype=np.float64)
         tasks: list[TaskReference] = []
         names: list[str] = []
+        postures: list[Array] = []
         for instant in times.tolist():
             state = self._expected(state, instant)
             tasks.append(self._task(state, instant))
             names.append(self.phases[state.index].name)
+            posture = self._said(state, instant).posture
+            postures += [] if posture is None else [posture]
+        axes = [np.eye(3) if task.task_rotation is None else task.task_rotation for task in tasks]
         return Preview(
             time=times,
             position=np.array([task.position for task in tasks]),
-            rotation=np.tile(self.rotation, (len(times), 1, 1)),
+            rotation=np.array([task.rotation for task in tasks]),
             velocity=np.array([task.velocity for task in tasks]),
             wrench=np.array([task.wrench for task in tasks]),
             phase=tuple(names),
-            posture=None if self.posture is None else np.tile(self.posture, (len(times), 1)),
+            posture=np.array(postures) if len(postures) == len(times) else None,
+            task_rotation=np.array(axes) if self._turning else None,
         )
 
     def _position(self, q: Array) -> Array:
         pin.framesForwardKinematics(self._model, self._data, q)
         return np.array(self._data.oMf[self._frame_id].translation)
+
+
+def _normal(axes: Orientation) -> tuple[Array, Array, Array]:
+    """The third of turning axes with its first two time derivatives, (6,) each, the last three entries zero."""
+    R, spin, change = axes
+    n = R[:, 2]
+    n_dot = cross(spin, n)
+    rows = np.zeros((3, 6))
+    rows[:, :3] = n, n_dot, cross(change, n) + cross(spin, n_dot)
+    return rows[0], rows[1], rows[2]

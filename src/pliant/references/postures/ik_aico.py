@@ -56,4 +56,11 @@ class AicoSolver(PoseSolver):
         distance = target.position - pose.translation
         if target.rotation is None:
             return distance, J[:3]
-        return np.concatenate([distance, log3(target.rotation @ np.array(pose.rotation).T)]), J
+        R = np.array(pose.rotation)
+        turned = target.nearest(R).rotation
+        assert turned is not None
+        angle = log3(turned @ R.T)
+        if target.spins:
+            P = np.eye(3) - np.outer(R[:, 2], R[:, 2])
+            J[3:], angle = P @ J[3:], P @ angle
+        return np.concatenate([distance, angle]), J

@@ -33,7 +33,9 @@ class MinkSolver(PoseSolver):
         q = box.clip(guess)
         self._range.box = box
         self._posture.set_target(prior)
-        self._pose.set_orientation_cost(0.0 if target.rotation is None else 1.0)
+        target = target.nearest(self.rotation(q))
+        about = (1.0, 1.0, 0.0) if target.spins else (1.0, 1.0, 1.0)  # the frame's own axes
+        self._pose.set_orientation_cost(0.0 if target.rotation is None else about)
         rotation = mink.SO3.identity() if target.rotation is None else mink.SO3.from_matrix(target.rotation)
         self._pose.set_target(mink.SE3.from_rotation_and_translation(rotation, target.position))
         for _ in range(self.MAX_ITERATIONS):

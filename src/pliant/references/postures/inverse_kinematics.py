@@ -27,6 +27,17 @@ class Target(NamedTuple):
     """(3,) m"""
     rotation: Array | None
     """R_world_frame (3, 3); None leaves the orientation free"""
+    spins: bool = False
+    """whether the frame may turn about its own z axis, so that the rotation's z axis alone counts"""
+
+    def nearest(self, R: Array) -> Target:
+        """The same target, turned about its own z axis, if it may be, to be as near as it can to R (3, 3)."""
+        if self.rotation is None or not self.spins:
+            return self
+        relative = self.rotation.T @ R
+        angle = math.atan2(relative[1, 0] - relative[0, 1], relative[0, 0] + relative[1, 1])
+        c, s = math.cos(angle), math.sin(angle)
+        return Target(self.position, self.rotation @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), True)
 
 
 class Box(NamedTuple):
@@ -67,9 +78,15 @@ class PoseSolver(ABC):
         pin.framesForwardKinematics(self.robot.model, self._data, q)
         pose = self._data.oMf[self._id]
         distance = float(np.linalg.norm(target.position - pose.translation))
-        if target.rotation is None:
+        rotation = target.nearest(np.array(pose.rotation)).rotation
+        if rotation is None:
             return distance, 0.0
-        return distance, math.sqrt(float(np.sum(log3(target.rotation @ np.array(pose.rotation).T) ** 2)))
+        return distance, math.sqrt(float(np.sum(log3(rotation @ np.array(pose.rotation).T) ** 2)))
+
+    def rotation(self, q: Array) -> Array:
+        """R_world_frame (3, 3) at q (n,)."""
+        pin.framesForwardKinematics(self.robot.model, self._data, q)
+        return np.array(self._data.oMf[self._id].rotation)
 
 
 def joint_box(robot: Robot) -> Box:

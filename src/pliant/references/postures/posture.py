@@ -38,6 +38,8 @@ class PostureOptions:
     """share of the joints' speed limits that a step from sample to sample may use"""
     tolerance: float = 1e-3
     """m by which the frame may miss its pose, ten times as many rad; infinite accepts everything, as near as it gets"""
+    spins: bool = False
+    """whether the frame may turn about its own z axis; a configuration that suits is then chosen"""
     restarts: int = 20
     """random configurations tried for the first pose if neither the nominal posture nor home lead there"""
 
@@ -91,7 +93,7 @@ def solve_posture(
     preferred = None if nominal is None else robot.vector(nominal, "the nominal posture")
     times = np.linspace(0.0, duration, max(4, math.ceil(duration / chosen.period) + 1))
     failure: UnreachableError | None = None
-    for start in first_postures(solver, _target(motion, 0.0), preferred, chosen)[:_BRANCHES]:
+    for start in first_postures(solver, _target(motion, 0.0, chosen), preferred, chosen)[:_BRANCHES]:
         try:
             return _follow(solver, motion, times, start, start if preferred is None else preferred, chosen)
         except UnreachableError as error:
@@ -157,9 +159,9 @@ def _follow(
     postures[0] = q = start
     period = float(times[1] - times[0])
     drift = min(1.0, chosen.nominal_rate * period)
-    worst = solver.shortfall(q, _target(motion, 0.0))
+    worst = solver.shortfall(q, _target(motion, 0.0, chosen))
     for index in range(1, times.shape[0]):
-        target = _target(motion, float(times[index]))
+        target = _target(motion, float(times[index]), chosen)
         reach = Box(np.maximum(limits.lower, q - speed * period), np.minimum(limits.upper, q + speed * period))
         q = solver.solve(q, q + drift * (preferred - q), reach, target)
         short = solver.shortfall(q, target)
@@ -171,9 +173,9 @@ def _follow(
     return PosturePath(times, postures, worst[0], worst[1])
 
 
-def _target(motion: FrameMotion, time: float) -> Target:
+def _target(motion: FrameMotion, time: float, chosen: PostureOptions) -> Target:
     task = motion.at(time)
-    return Target(task.position, task.rotation)
+    return Target(task.position, task.rotation, chosen.spins)
 
 
 def _complaint(solver: PoseSolver, q: Array, target: Target, time: float, hurried: bool = False) -> str:

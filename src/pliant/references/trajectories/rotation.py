@@ -11,7 +11,7 @@ from pliant.errors import ConfigError
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.time_scaling import Warp
 from pliant.references.trajectories.trajectory import vector
-from pliant.spatial import Array
+from pliant.spatial import Array, cross
 
 
 class Orientation(NamedTuple):
@@ -85,7 +85,7 @@ class QuaternionSpline(Turning):
 def _product(a: Array, b: Array) -> Array:
     """Hamilton product of quaternions (4,), scalar first."""
     scalar = a[0] * b[0] - a[1:] @ b[1:]
-    return np.concatenate([[scalar], a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])])
+    return np.concatenate([[scalar], a[0] * b[1:] + b[0] * a[1:] + cross(a[1:], b[1:])])
 
 
 def _matrix(q: Array) -> Array:

@@ -1,0 +1,40 @@
+"""A part of a longer trajectory or turning, with a clock of its own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pliant.references.trajectories.rotation import Orientation, Turning
+from pliant.references.trajectories.trajectory import Point, Trajectory
+
+
+class Excerpt(Trajectory):
+    """Another trajectory from one time to another; held before and after.
+
+    Args:
+        inner: the whole.
+        start, end: s of its clock.
+    """
+
+    def __init__(self, inner: Trajectory, start: float, end: float) -> None:
+        self._inner, self._start = inner, start
+        self.size, self.duration = inner.size, end - start
+
+    def at(self, time: float) -> Point:
+        if 0.0 <= time <= self.duration:
+            return self._inner.at(self._start + time)
+        held = self._inner.at(self._start + min(max(time, 0.0), self.duration)).value
+        return Point(held, np.zeros(self.size), np.zeros(self.size))
+
+
+class TurningExcerpt(Turning):
+    """The same for orientations. Args: as `Excerpt`."""
+
+    def __init__(self, inner: Turning, start: float, end: float) -> None:
+        self._inner, self._start, self._duration = inner, start, end - start
+
+    def at(self, time: float) -> Orientation:
+        if 0.0 <= time <= self._duration:
+            return self._inner.at(self._start + time)
+        held = self._inner.at(self._start + min(max(time, 0.0), self._duration)).rotation
+        return Orientation(held, np.zeros(3), np.zeros(3))
