@@ -1,8 +1,15 @@
-"""The base of every typed configuration."""
+"""Typed configurations: defaults in code, overridden by a TOML file, overridden by `--set key=value`."""
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from pliant.errors import ConfigError, options
 
 
 class Config(BaseModel):
@@ -13,3 +20,113 @@ class Config(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+
+
+C = TypeVar("C", bound=BaseModel)
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Reads a TOML file.
+
+    Raises:
+        ConfigError: the file does not exist, cannot be read, or is not TOML (duplicate keys included).
+    """
+    try:
+        with path.open("rb") as file:
+            return tomllib.load(file)
+    except FileNotFoundError:
+        raise ConfigError(f"configuration file {path} does not exist") from None
+    except OSError as error:
+        raise ConfigError(f"configuration file {path} cannot be read: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigError(f"configuration file {path} is not TOML: {error}") from error
+
+
+def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
+    """Turns `plant.period=0.001` into nested dictionaries; values are TOML, bare words are strings.
+
+    Raises:
+        ConfigError: no `=`, an empty key, or the same key twice.
+    """
+    tree: dict[str, Any] = {}
+    for text in assignments:
+        key, equals, value = text.partition("=")
+        parts = [part.strip() for part in key.split(".")]
+        if not equals or not all(parts):
+            raise ConfigError(f"an override is written key=value, for example plant.period=0.001, got {text!r}")
+        node = tree
+        for part in parts[:-1]:
+            node = node.setdefault(part, {})
+            if not isinstance(node, dict):
+                raise ConfigError(f"override {text!r}: {part!r} was already given a value")
+        if parts[-1] in node:
+            raise ConfigError(f"override {key.strip()!r} is given twice")
+        node[parts[-1]] = _toml_value(value.strip())
+    return tree
+
+
+def merged(config: C, changes: Mapping[str, Any]) -> C:
+    """The configuration with some values replaced, checked again as a whole.
+
+    Raises:
+        ConfigError: an unknown key (with the valid ones) or a value that breaks a rule (with the rule).
+    """
+    if not changes:
+        return config
+    return validated(type(config), _overlay(config.model_dump(), changes))
+
+
+def validated(kind: type[C], values: Mapping[str, Any]) -> C:
+    """Builds a configuration; the first thing wrong with it becomes one clear sentence."""
+    try:
+        return kind.model_validate(dict(values))
+    except ValidationError as error:
+        raise ConfigError(_sentence(kind, error)) from None
+
+
+def _overlay(base: Any, changes: Mapping[str, Any]) -> dict[str, Any]:
+    result = dict(base) if isinstance(base, Mapping) else {}
+    for key, value in changes.items():
+        nested = isinstance(value, Mapping) and isinstance(result.get(key), Mapping)
+        result[key] = _overlay(result[key], value) if nested else value
+    return result
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        if text.lower() in ("none", "null"):
+            return None
+        return text
+
+
+def _sentence(kind: type[BaseModel], error: ValidationError) -> str:
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    got = first.get("input")
+    if first["type"] == "extra_forbidden":
+        return f"unknown key {where!r}; {options(_keys_beside(kind, first['loc']), str(first['loc'][-1]))}"
+    return f"{where or kind.__name__}: {first['msg'].removeprefix('Value error, ')}, got {got!r}"
+
+
+def _keys_beside(kind: type[BaseModel], location: Sequence[int | str]) -> list[str]:
+    fields = kind.model_fields
+    for part in location[:-1]:
+        field = fields.get(str(part))
+        if field is None:
+            continue  # a discriminator or a list index
+        nested = _models_in(field.annotation)
+        if not nested:
+            return []
+        fields = nested[0].model_fields
+    return list(fields)
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    found: list[type[BaseModel]] = []
+    for argument in getattr(annotation, "__args__", ()):
+        found += _models_in(argument)
+    return found

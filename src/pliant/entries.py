@@ -6,25 +6,81 @@ the tables. So no package needs to know another.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
-from pliant.configuration import Config
+from pliant.configuration import Config, merged
 from pliant.errors import ConfigError, options
-from pliant.interfaces import Controller
+from pliant.interfaces import Compensation, Controller, Needs, ReferenceSource
 from pliant.robot import Robot
+from pliant.signals import ImpedanceTuning
+
+_NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 class ControllerConfig(Config):
     """Base of a controller's configuration."""
 
+    def driven_frames(self) -> tuple[str, ...]:
+        """Frames that the controller drives whatever the task; empty: those of the task."""
+        return ()
+
+    def impedances(self) -> Mapping[str, ImpedanceTuning]:
+        """Frame → tuning of the fractal impedances that it describes, which a reference can replace."""
+        return _NOTHING
+
+    def whole_tuning(self) -> Any:
+        """A frozen value with parameters of the whole controller that a reference can carry; None if there is none."""
+        return None
+
 
 C = TypeVar("C", bound=ControllerConfig)
 
 
+@dataclass(frozen=True)
+class Believed:
+    """What a controller may know of a task and of its robot before it starts: nothing of how the world differs."""
+
+    frames: tuple[str, ...]
+    """frames with a reference, the most important first"""
+    period: float
+    """of control, s"""
+    oriented: bool = True
+    """whether the first frame's orientation is asked for"""
+    presses: str | None = None
+    """frame from which a force is asked; None: no force is asked for"""
+    compensation: Compensation = "none"
+    """what the robot compensates by itself"""
+    sensing_delay: float = 0.0
+    """age of a reading, s"""
+    computation_delay: float = 0.0
+    """from a reading to the effect of its command, s"""
+    phases: Mapping[str, bool] = field(default_factory=lambda: _NOTHING)
+    """name of each phase in the references → whether the frame touches in it; empty: phases mean nothing"""
+    tunings: Mapping[str, ImpedanceTuning] = field(default_factory=lambda: _NOTHING)
+    """frame → impedance that the references carry"""
+
+
 def _no_advice(robot: Robot, config: Any, period: float) -> tuple[str, ...]:
     return ()
+
+
+def _needs_nothing(config: Any) -> Needs:
+    return Needs()
+
+
+def _as_it_is(robot: Robot, config: Any, believed: Believed) -> Any:
+    return config
+
+
+def _unfiltered(source: ReferenceSource[Any], robot: Robot, config: Any) -> ReferenceSource[Any]:
+    return source
+
+
+def _no_channels(config: Any, frames: Sequence[str]) -> Mapping[str, str]:
+    return _NOTHING
 
 
 @dataclass(frozen=True)
@@ -40,6 +96,29 @@ class ControllerEntry(Generic[C]):
     """robot, configuration, control period in s → controller"""
     advise: Callable[[Robot, C, float], tuple[str, ...]] = _no_advice
     """robot, configuration, control period in s → what is unsafe about the parameters, in sentences"""
+    family: str = "other"
+    """controllers of one family share the type of their configuration"""
+    guarantees: str = "–"
+    """what holds of it, in a few words, and where"""
+    regulates_force: bool = False
+    """whether it, with its reference filter, drives the contact force to the desired one"""
+    needs: Callable[[C], Needs] = _needs_nothing
+    """configuration → what it wants to be told"""
+    suggest: Callable[[Robot, C, Believed], C] = _as_it_is
+    """robot, configuration to start from, what is believed of the task → a configuration that suits both"""
+    fixed: Mapping[str, Any] = field(default_factory=lambda: _NOTHING)
+    """values of the configuration that make this controller of its family what it is"""
+    filter: Callable[[ReferenceSource[Any], Robot, C], ReferenceSource[Any]] = _unfiltered
+    """what stands between the task's references and the controller"""
+    filter_channels: Callable[[C, Sequence[str]], Mapping[str, str]] = _no_channels
+    """configuration and pressing frames → channel of the filter → unit"""
+    planner: str = ""
+    """planner of targets that jump which belongs to it; empty: the task's"""
+
+    def over(self, base: ControllerConfig) -> C:
+        """Another configuration of the family with what makes this controller what it is."""
+        changed: C = merged(base, self.fixed)  # type: ignore[assignment]  # one family, one type
+        return changed
 
 
 def merged_entries(*tables: Mapping[str, ControllerEntry[Any]]) -> dict[str, ControllerEntry[Any]]:

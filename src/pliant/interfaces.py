@@ -6,6 +6,9 @@ A state may own buffers that `step` reuses: the state passed in is consumed, kee
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Generic, Literal, Protocol, TypeVar
 
 from pliant.signals import Command, Estimate, Measurement, Reference, Tick, Truth
@@ -15,6 +18,67 @@ State = TypeVar("State")
 
 Compensation = Literal["none", "gravity", "gravity+coriolis"]
 """what a robot's own controller adds, invisibly, to the torque that is sent"""
+
+
+class HasUnit(Protocol):
+    """Describes a diagnostic."""
+
+    @property
+    def unit(self) -> str:
+        """SI; where linear and angular parts share a vector: both, with a comma"""
+        ...
+
+
+@dataclass(frozen=True)
+class ChannelUnit:
+    """A diagnostic of which the unit is all there is to say."""
+
+    unit: str
+
+
+@dataclass(frozen=True)
+class Lookahead:
+    """Instants of a preview."""
+
+    nodes: int
+    """N: there are N + 1 instants"""
+    step: float
+    """s between them"""
+    lead: float = 0.0
+    """s from now to the first of them: commands that take effect later want later references"""
+
+
+@dataclass(frozen=True)
+class Needs:
+    """What a controller wants to be told, beyond joint positions and velocities and its tasks' references.
+
+    Whoever wires a loop builds estimators and preview from it; no task and no study knows what a controller wants.
+    """
+
+    preview: Lookahead | None = None
+    """the reference at later instants; None: the present one is enough"""
+    wrench: bool = False
+    """the contact wrench at the frame that presses"""
+    disturbance: Literal["none", "normal", "all"] = "none"
+    """the joint torque that the model does not explain, and how much of a contact's wrench the model explains"""
+    environment: bool = False
+    """stiffness and damping of what the frame touches"""
+    calm: bool = False
+    """joint positions without white noise"""
+    torque: bool = False
+    """the measured joint torques"""
+    posture: bool = False
+    """a joint configuration that goes with the task"""
+
+    def words(self) -> tuple[str, ...]:
+        """The same for people."""
+        names = ("preview", "wrench", "environment", "torque", "posture")
+        wanted = (self.preview is not None, self.wrench, self.environment, self.torque, self.posture)
+        found = [name for name, wants in zip(names, wanted, strict=True) if wants]
+        return (*found, "disturbance") if self.disturbance != "none" else tuple(found)
+
+
+_NO_CHANNELS: Mapping[str, HasUnit] = MappingProxyType({})
 
 
 class Estimator(ABC, Generic[State]):
@@ -43,6 +107,21 @@ class ReferenceSource(ABC, Generic[State]):
 
 class Controller(ABC, Generic[State]):
     """Turns estimates and references into torques. A controller never sees the simulator."""
+
+    @property
+    def needs(self) -> Needs:
+        """What it wants to be told; by default nothing special."""
+        return Needs()
+
+    @property
+    def channels(self) -> Mapping[str, HasUnit]:
+        """Name → unit of every channel in `Command.diagnostics`; a channel that is not named is logged without one."""
+        return _NO_CHANNELS
+
+    @property
+    def regulates_force(self) -> bool:
+        """Whether it drives the contact force to the reference's `wrench`."""
+        return False
 
     @abstractmethod
     def init(self, estimate: Estimate) -> State:

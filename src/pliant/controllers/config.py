@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -165,6 +166,12 @@ class StackConfig(ControllerConfig):
     def frame_tasks(self) -> tuple[FrameTask, ...]:
         """The tasks that are not dropped."""
         return tuple(task.task(label) for label, task in self.tasks.items() if task is not None)
+
+    def driven_frames(self) -> tuple[str, ...]:
+        return tuple(task.frame for task in self.tasks.values() if task is not None)
+
+    def impedances(self) -> Mapping[str, ImpedanceTuning]:
+        return {task.frame: task.tuning for task in self.frame_tasks()}
 
 
 class OperationalSpaceConfig(ControllerConfig):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from pliant.controllers.attractor import Law, PhaseSettings
 from pliant.controllers.stack import Stack, StackState
 from pliant.controllers.task import FrameTask
-from pliant.interfaces import Controller
+from pliant.interfaces import Controller, HasUnit
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 
@@ -30,6 +32,11 @@ class FractalImpedance(Controller[StackState]):
         """Arguments and errors as in `Stack`, with one task."""
         self.task = task
         self.stack = Stack(robot, [task], period, law=law, phases=phases, gravity_compensation=gravity_compensation)
+
+    @property
+    def channels(self) -> Mapping[str, HasUnit]:
+        """Name → unit of every channel in `Command.diagnostics`."""
+        return self.stack.channels
 
     def init(self, estimate: Estimate) -> StackState:
         """Starts diverging, with an empty ledger."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import ChainMap
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from pliant.configuration import Config
-from pliant.interfaces import Controller
+from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
@@ -83,6 +84,19 @@ class JointLimits(Controller[JointLimitsState]):
         self._to = np.where(limited, lower + margin, -np.inf)
         self.torque_max: Array = config.share * np.where(np.isfinite(self._limit), self._limit, _UNLIMITED)
         self.stiffness: Array = self.torque_max / margin
+
+    @property
+    def needs(self) -> Needs:
+        return self.inner.needs
+
+    @property
+    def channels(self) -> Mapping[str, HasUnit]:
+        added = {"energy/joint_limits": ChannelUnit("J"), "joint_limits/torque": ChannelUnit("N·m")}
+        return {**self.inner.channels, **added}
+
+    @property
+    def regulates_force(self) -> bool:
+        return self.inner.regulates_force
 
     def init(self, estimate: Estimate) -> JointLimitsState:
         inner, zero = self.inner.init(estimate), np.zeros_like(estimate.q)

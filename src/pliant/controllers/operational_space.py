@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -11,7 +12,7 @@ import pinocchio as pin
 
 from pliant.controllers.dynamics import mass_matrix
 from pliant.errors import ConfigError, SignalError, options
-from pliant.interfaces import Controller
+from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference, TaskReference
 from pliant.spatial import Array, all_finite, log3
@@ -64,6 +65,16 @@ class OperationalSpace(Controller[OperationalSpaceState]):
         if self.compensation not in ("none", "coriolis", "gravity+coriolis"):
             valid = options(["none", "coriolis", "gravity+coriolis"], self.compensation)
             raise ConfigError(f"unknown compensation {self.compensation!r}; {valid}")
+
+    @property
+    def needs(self) -> Needs:
+        """A posture, for what the task leaves free."""
+        return Needs(posture=True)
+
+    @property
+    def channels(self) -> Mapping[str, HasUnit]:
+        """Name → unit of every channel in `Command.diagnostics`."""
+        return {f"{self.label}/error": ChannelUnit("m, rad"), f"{self.label}/wrench": ChannelUnit("N, N·m")}
 
     def init(self, estimate: Estimate) -> OperationalSpaceState:
         """Scratch space. Raises ShapeError for a robot with other joints."""

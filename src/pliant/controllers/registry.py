@@ -11,7 +11,9 @@ from pliant.controllers.config import OperationalSpaceConfig, StackConfig
 from pliant.controllers.operational_space import OperationalSpace
 from pliant.controllers.presets import STIFF_STACK
 from pliant.controllers.stack import Stack
+from pliant.controllers.suggest import suggest_operational_space, suggest_stack
 from pliant.entries import ControllerEntry
+from pliant.interfaces import Needs
 from pliant.robot import Robot
 
 
@@ -43,9 +45,22 @@ def advise_stack(robot: Robot, config: StackConfig, period: float) -> tuple[str,
     return tuple(found)
 
 
+_PASSIVE = "energy out of each axis ≤ stored + supplied (docs/controllers.md says when)"
+
+
 def _stack(name: str, law: Law, summary: str) -> ControllerEntry[StackConfig]:
     default = STIFF_STACK.model_copy(update={"law": law})
-    return ControllerEntry(name, summary, default, build_stack, advise_stack)
+    return ControllerEntry(
+        name,
+        summary,
+        default,
+        build_stack,
+        advise_stack,
+        family="stack",
+        guarantees=_PASSIVE if law is Law.CAPPED else "–",
+        suggest=suggest_stack,
+        fixed={"law": law},
+    )
 
 
 CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
@@ -67,6 +82,9 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
             "Khatib's operational-space controller with a dynamically consistent posture",
             OperationalSpaceConfig(),
             build_operational_space,
+            family="operational-space",
+            needs=lambda config: Needs(posture=True),
+            suggest=suggest_operational_space,
         ),
     )
 }

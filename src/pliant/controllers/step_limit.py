@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.interfaces import Controller
+from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
@@ -19,7 +19,7 @@ DEFAULT_SHARE = 0.14
 """of a joint's torque limit per period: the change that no controller need exceed in use"""
 SPENDABLE = "energy/spendable"
 """channel of a controller that books its energy: J that a layer outside may spend in the next period"""
-CHANNELS = {"energy/step_limit": "J", "step_limit/exceeded": "1"}
+CHANNELS: Mapping[str, HasUnit] = {"energy/step_limit": ChannelUnit("J"), "step_limit/exceeded": ChannelUnit("1")}
 """name → unit of what is added to the inner controller's channels"""
 
 
@@ -67,6 +67,18 @@ class StepLimit(Controller[StepLimitState]):
         self.inner = inner
         self.step_max: Array = share * robot.torque_limit
         self._limit: Array = robot.torque_limit
+
+    @property
+    def needs(self) -> Needs:
+        return self.inner.needs
+
+    @property
+    def channels(self) -> Mapping[str, HasUnit]:
+        return {**self.inner.channels, **CHANNELS}
+
+    @property
+    def regulates_force(self) -> bool:
+        return self.inner.regulates_force
 
     def init(self, estimate: Estimate) -> StepLimitState:
         """The first torque may differ by a step from what the robot says it holds; nothing, if it does not say."""

@@ -6,18 +6,17 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from pydantic import Field
 
 from pliant.controllers.joint_limits import JointLimitsConfig
 from pliant.errors import ConfigError, options
 from pliant.experiments.config import Config
-from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
-from pliant.robot import Robot
 from pliant.telemetry.log import Log
-from pliant.telemetry.schema import Channel
 from pliant.telemetry.summary import Metric
+from pliant.wiring.experiment import Experiment as Experiment
+from pliant.wiring.registry import controllers
 
 if TYPE_CHECKING:
     from pliant.experiments.tuning import Tuning
@@ -43,21 +42,6 @@ C = TypeVar("C", bound=CaseConfig)
 
 
 @dataclass(frozen=True)
-class Experiment:
-    """A wired loop, ready to run."""
-
-    robot: Robot
-    plant: Plant[Any]
-    estimator: Estimator[Any]
-    source: ReferenceSource[Any]
-    controller: Controller[Any]
-    channels: tuple[Channel, ...] = ()
-    """units of what the controller and the source report"""
-    warnings: tuple[str, ...] = ()
-    """what is unsafe about the parameters, in sentences"""
-
-
-@dataclass(frozen=True)
 class Result:
     """What came out of one run."""
 
@@ -78,10 +62,13 @@ class Study(ABC, Generic[C]):
     """one line, for people"""
     cases: Mapping[str, C]
     """name → its configuration; the first is the default"""
-    controllers: Sequence[str]
-    """names that `controller` can take"""
     worst: Collection[str] = ()
     """names of metrics that the worst run of a row decides; of the others it shows the mean"""
+
+    @property
+    def controllers(self) -> Sequence[str]:
+        """Names that `controller` can take; beside them, `module:Class` and `file.py:Class`."""
+        return tuple(controllers())
 
     def case(self, name: str) -> C:
         """Configuration of a case. Raises ConfigError, with the cases there are, if it does not exist."""

@@ -139,6 +139,13 @@ class MpcConfig(ControllerConfig):
     posture: Literal["start", "reference"] = Field(
         default="reference", description="posture reference: where the controller started, or the task's if it has one"
     )
+    gravity: bool = Field(
+        default=True, description="the robot's weight is part of the model; off where the robot compensates it itself"
+    )
+    phase_by: Literal["name", "contact"] = Field(
+        default="name",
+        description="costs of a phase: those of its name, or the first with the contact that is felt now",
+    )
     task_velocity: bool = Field(
         default=True, description="velocity cost about the task's velocity; false: about zero, as in [FFMPC] eq. 25.5"
     )

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pinocchio as pin
 
 from pliant import _mpc
 from pliant.errors import ConfigError, SignalError, options
-from pliant.interfaces import Controller
+from pliant.interfaces import Controller, Lookahead, Needs
 from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.compensation import CompensationState, Compensator
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.horizon import HorizonReference, along_horizon, require_pushing
 from pliant.mpc.kernel import kernel_model, kernel_solver
+from pliant.mpc.needs import needs_of
 from pliant.mpc.plan import Plan, SafeTorque, plan_of, torque_from, usable
 from pliant.mpc.problem import MpcProblem, problem_from_robot
 from pliant.robot import Robot
@@ -84,6 +85,18 @@ class MpcController(Controller[MpcState]):
         self.compensator = Compensator(config.compensation, self.problem, self.chain, period or config.period)
         self._safe = SafeTorque(robot.model, config.fallback_damping)
         self._limit = robot.torque_limit
+
+    @property
+    def needs(self) -> Needs:
+        """A preview from the time at which its command takes effect, and what its model and compensations read."""
+        wanted = needs_of(self.config)
+        lookahead = Lookahead(self.config.horizon, self.config.dt, self.compensator.lead)
+        return replace(wanted, preview=lookahead)
+
+    @property
+    def regulates_force(self) -> bool:
+        """Its costs hold the predicted force to the reference's in every phase with contact."""
+        return True
 
     @property
     def channels(self) -> Mapping[str, diagnostics.DiagnosticChannel]:
@@ -180,7 +193,8 @@ class MpcController(Controller[MpcState]):
         state.channels = diagnostics.of_solution(solution, path, in_contact, config.deadline)
 
     def _write_horizon(self, horizon: HorizonReference, estimate: Estimate, x: Array, state: MpcState) -> None:
-        phases = tuple(phase or self._unnamed_phase(estimate) for phase in horizon.phase)
+        named = self.config.phase_by == "name"
+        phases = tuple((phase if named else "") or self._unnamed_phase(estimate) for phase in horizon.phase)
         key = (*phases, horizon.rotation is None)
         if key != state.phases:
             self.problem.write_phases(state.nodes, phases, oriented=horizon.rotation is not None)

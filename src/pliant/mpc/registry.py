@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
+
+import pinocchio as pin
 
 from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError
 from pliant.mpc.config import ClassicalMpc, ForceFeedbackMpc, MpcConfig, OffsetFreeMpc, TorqueFeedbackMpc
 from pliant.mpc.controller import MpcController
 from pliant.mpc.costs import Term
+from pliant.mpc.needs import needs_of, suggest_mpc
 from pliant.robot import Robot
 
 
@@ -24,7 +28,34 @@ def build_mpc(robot: Robot, config: MpcConfig, period: float) -> MpcController:
             f"period (time from solve to solve) must be at least the control period {period:g} s, got"
             f" {config.period:g} s"
         )
-    return MpcController(robot, config, period)
+    return MpcController(robot if config.gravity else _weightless(robot), config, period)
+
+
+def _weightless(robot: Robot) -> Robot:
+    """The same robot without gravity: what a controller sees of one that compensates its weight by itself."""
+    model = robot.model.copy()
+    model.gravity = pin.Motion.Zero()
+    return replace(robot, model=model)
+
+
+def _entry(
+    name: str,
+    summary: str,
+    default: MpcConfig,
+    advise: Callable[[Robot, MpcConfig, float], tuple[str, ...]],
+) -> ControllerEntry[MpcConfig]:
+    return ControllerEntry(
+        name,
+        summary,
+        default,
+        build_mpc,
+        advise,
+        family="mpc",
+        guarantees="finite torques within the limits; without a solution: gravity and damping",
+        regulates_force=True,
+        needs=needs_of,
+        suggest=suggest_mpc,
+    )
 
 
 def advise_mpc(robot: Robot, config: MpcConfig, period: float) -> tuple[str, ...]:
@@ -50,31 +81,29 @@ def _counts_tangents(term: Term) -> bool:
 CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
     entry.name: entry
     for entry in (
-        ControllerEntry(
+        _entry(
             "force-feedback-mpc",
             "predictive, visco-elastic contact, the measured force is part of the state (Kleff et al. 2024)",
             ForceFeedbackMpc(),
-            build_mpc,
             advise_mpc,
         ),
-        ControllerEntry(
+        _entry(
             "offset-free-mpc",
             "force feedback with disturbance observer, prediction over delays and force integral",
             OffsetFreeMpc(),
-            build_mpc,
             advise_mpc,
         ),
-        ControllerEntry(
+        _entry(
             "torque-feedback-mpc",
             "predictive, rigid contact, the measured joint torque is part of the state",
             TorqueFeedbackMpc(),
-            build_mpc,
+            advise_mpc,
         ),
-        ControllerEntry(
+        _entry(
             "classical-mpc",
             "predictive, rigid contact, feedback of position and velocity only",
             ClassicalMpc(),
-            build_mpc,
+            advise_mpc,
         ),
     )
 }

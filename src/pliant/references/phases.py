@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from pliant.errors import ConfigError, RunFailedError
-from pliant.interfaces import ReferenceSource
+from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.landing import Height
 from pliant.references.task_phase import TaskPhase as TaskPhase
 from pliant.references.trajectories.rotation import Orientation
@@ -22,18 +22,6 @@ from pliant.spatial import Array, cross
 
 _REMEMBERED = 1024  # instants
 _NO_WRENCH = vector(np.zeros(6), "no wrench")
-
-
-@dataclass(frozen=True)
-class Lookahead:
-    """Instants of a preview."""
-
-    nodes: int
-    """N: there are N + 1 instants"""
-    step: float
-    """s between them"""
-    lead: float = 0.0
-    """s from now to the first of them: commands that take effect later want later references"""
 
 
 @dataclass(frozen=True, slots=True)

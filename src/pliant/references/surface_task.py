@@ -16,7 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError
-from pliant.references.phases import Lookahead, PhasedSource, TaskPhase
+from pliant.interfaces import Lookahead
+from pliant.references.phases import PhasedSource, TaskPhase
 from pliant.references.postures.path_posture import PathPosture, path_posture
 from pliant.references.toolpaths.pressing import ForceProfile, Pressing
 from pliant.references.toolpaths.toolpath import Toolpath

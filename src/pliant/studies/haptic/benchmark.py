@@ -9,7 +9,7 @@ import numpy as np
 
 from pliant.signals import Estimate
 from pliant.spatial import Array
-from pliant.studies.haptic.build import foot_impedance, references, robot_of
+from pliant.studies.haptic.build import planned, robot_of
 from pliant.studies.haptic.cases import CASES
 
 _STIFFNESS = 6000.0  # N/m of the synthetic contact
@@ -31,7 +31,9 @@ def run(n: int = 20000) -> dict[str, Any]:
     config = CASES["floor"]
     config = config.model_copy(update={"steps": _to_and_fro(n * config.period)})
     robot = robot_of(config)
-    source, controller = references(config, robot), foot_impedance(robot, config)
+    entry, parameters = config.entry, config.controller_parameters(robot)
+    source = entry.filter(planned(config, robot, parameters), robot, parameters)
+    controller = entry.build(robot, parameters, config.period)
     zero, warm_up = np.zeros(robot.n), max(n // 10, 1)
     first = Estimate(-warm_up * config.period, robot.home, zero, zero, zero, {config.frame: np.zeros(6)})
     ref, ctl = source.init(first), controller.init(first)

@@ -7,16 +7,9 @@ from typing import Any
 
 import pinocchio as pin
 
-from pliant.controllers.attractor import Law
-from pliant.controllers.joint_limits import with_joint_limits
-from pliant.controllers.stack import Stack
-from pliant.controllers.task import FrameTask
+from pliant.entries import ControllerConfig
 from pliant.errors import ConfigError
-from pliant.estimation import WrenchEstimator
-from pliant.experiments.base import Experiment
-from pliant.interfaces import Plant, ReferenceSource
-from pliant.references.exploration.config import ExplorationConfig
-from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
+from pliant.interfaces import Needs, Plant, ReferenceSource
 from pliant.references.planners.attractor_planner import AttractorPlanner
 from pliant.references.planners.harmonic_attractor import AttractorSettings
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
@@ -26,15 +19,14 @@ from pliant.robot import Robot
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, LinkCapsule, MujocoPlant
 from pliant.simulation.imperfections.actuation import ActuationConfig
 from pliant.simulation.imperfections.sensing import SensingConfig
-from pliant.studies.haptic.config import HapticConfig, Planner
+from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import warnings_of
 from pliant.studies.haptic.scene import scene_of
 from pliant.studies.haptic.script import schedule
 from pliant.telemetry.schema import Channel
-
-TASK = "foot"
-"""label of the impedance in channel names"""
+from pliant.wiring.experiment import Experiment
+from pliant.wiring.wire import Offer, wired
 
 
 def build(config: HapticConfig) -> Experiment:
@@ -47,20 +39,19 @@ def build(config: HapticConfig) -> Experiment:
     config = drawn(config)
     robot = robot_of(config)
     robot.frame_id(config.frame)
-    _require_force_signal(config)
-    controller = foot_impedance(robot, config)
-    units = [Channel(name, about.unit) for name, about in controller.channels.items()]
-    units.append(Channel(f"planner/{config.frame}/clamped", "m"))
-    units += [Channel(f"exploration/{config.frame}/{name}", unit) for name, unit in CHANNELS.items()]
-    return Experiment(
+    entry, parameters = config.entry, config.controller_parameters(robot)
+    _require_force_signal(config, entry.needs(parameters))
+    offer = Offer(
         robot=robot,
-        plant=plant_of(config, robot),
-        estimator=WrenchEstimator(robot),
-        source=references(config, robot),
-        controller=with_joint_limits(controller, robot, config.joint_limits),
-        channels=tuple(units),
+        believed=config.believed,
+        plant=lambda felt: plant_of(config, robot),
+        source=lambda lookahead: planned(config, robot, parameters),
+        torque_step=config.torque_step,
+        joint_limits=config.joint_limits,
+        channels=(Channel(f"planner/{config.frame}/clamped", "m"),),
         warnings=warnings,
     )
+    return wired(entry, parameters, offer)
 
 
 def robot_of(config: HapticConfig) -> Robot:
@@ -76,27 +67,15 @@ def robot_of(config: HapticConfig) -> Robot:
     return replace(robot, model=model)
 
 
-def foot_impedance(robot: Robot, config: HapticConfig) -> Stack:
-    """The fractal impedance that pulls the foot."""
-    printed = config.controller == "haptic-paper"
-    law = Law.HAPFIC if printed else config.impedance.law
-    task = FrameTask(config.frame, config.impedance.tuning(), TASK, config.impedance.profile)
-    return Stack(robot, [task], config.period, law=law)
-
-
-def references(config: HapticConfig, robot: Robot) -> ReferenceSource[Any]:
-    """What the user wants, planned, and then explored."""
-    exploration = effective_exploration(config)
-    wanted = schedule(config, exploration)
-    planned = _planned(wanted, config.planner, robot, config.frame, printed=config.controller == "haptic-paper")
-    return planned if config.controller == "haptic-hold" else HapticExploration(planned, exploration)
-
-
-def effective_exploration(config: HapticConfig) -> ExplorationConfig:
-    """The exploration's parameters; as printed for the control arm."""
-    if config.controller == "haptic-paper":
-        return config.exploration.model_copy(update={"mode": "paper"})
-    return config.exploration
+def planned(config: HapticConfig, robot: Robot, parameters: ControllerConfig) -> ReferenceSource[Any]:
+    """What the user wants, planned. The references carry the parameters of the exploration."""
+    wanted = schedule(config, parameters.whole_tuning() or config.exploration)
+    planner = config.planner
+    if (config.entry.planner or planner.kind) == "attractor":
+        # as printed, eq. 3 gets stuck or runs away and nothing else could be compared: the corrected reading
+        return AttractorPlanner(wanted, robot.placement, AttractorSettings(planner.speed, planner.acceleration))
+    limits = PlannerLimits(linear=MotionLimits(planner.speed, planner.acceleration))
+    return HarmonicPlanner(wanted, robot.placement, limits, {config.frame: workspace_of(robot, config.frame)})
 
 
 def plant_of(config: HapticConfig, robot: Robot) -> Plant[Any]:
@@ -128,20 +107,9 @@ def plant_of(config: HapticConfig, robot: Robot) -> Plant[Any]:
     return ImperfectPlant(plant, imperfections, seed=config.seed)
 
 
-def _planned(
-    wanted: ReferenceSource[Any], planner: Planner, robot: Robot, frame: str, printed: bool
-) -> ReferenceSource[Any]:
-    if printed or planner.kind == "attractor":
-        # as printed, eq. 3 gets stuck or runs away and nothing else could be compared: the corrected reading
-        return AttractorPlanner(wanted, robot.placement, AttractorSettings(planner.speed, planner.acceleration))
-    limits = PlannerLimits(linear=MotionLimits(planner.speed, planner.acceleration))
-    return HarmonicPlanner(wanted, robot.placement, limits, {frame: workspace_of(robot, frame)})
-
-
-def _require_force_signal(config: HapticConfig) -> None:
-    pressing = any(step.force is not None and any(step.force) for step in config.steps)
-    if pressing and not config.sensor and config.controller != "haptic-hold":
+def _require_force_signal(config: HapticConfig, needs: Needs) -> None:
+    if config.pressing and needs.wrench and not config.sensor:
         raise ConfigError(
             f"frame {config.frame!r} should press but has no force signal: set sensor=true, ask for no force, or use"
-            " controller haptic-hold"
+            " a controller that needs none, such as haptic-hold"
         )

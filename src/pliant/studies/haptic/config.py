@@ -14,14 +14,25 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from pliant.controllers.attractor import Law
+from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationConfig
 from pliant.controllers.profiles import Shape
-from pliant.errors import PliantError, options
+from pliant.entries import Believed, ControllerConfig, ControllerEntry
+from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import Config
+from pliant.experiments.config import Config, merged
 from pliant.references.exploration.config import ExplorationConfig
+from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
+from pliant.wiring.recipes import HapticConfig as HapticRecipe
+from pliant.wiring.registry import find_controller
+from pliant.wiring.wire import parameters_for
 
-CONTROLLERS = ("haptic", "haptic-paper", "haptic-hold")
+JUDGED = "haptic"
+"""the controller that the targets are for"""
+FAMILY = "haptic"
+"""of the controllers whose parameters are `impedance` and `exploration`"""
+TASK = "foot"
+"""label of the impedance in channel names"""
 
 Vector = tuple[float, float, float]
 NotNegative = Annotated[float, Field(ge=0.0)]
@@ -136,7 +147,8 @@ class Planner(Config):
 
     kind: Literal["superposition", "attractor"] = Field(
         default="superposition",
-        description="superposition: never leaves the hull of the targets; attractor: [HapFIC] eq. 2-3, corrected",
+        description="superposition: never leaves the hull of the targets; attractor: [HapFIC] eq. 2-3, corrected, which"
+        " haptic-paper always has",
     )
     speed: float = quantity(0.2, "m/s", "fastest motion of the target", gt=0.0)
     acceleration: float = quantity(2.0, "m/s²", "largest acceleration of the target", gt=0.0)
@@ -201,7 +213,8 @@ class HapticConfig(CaseConfig):
 
     controller: str = Field(
         default="haptic",
-        description="haptic: pliant's; haptic-paper: as printed, but for the planner; haptic-hold: impedance alone",
+        description="haptic: pliant's; haptic-paper: as printed, but for the planner; haptic-hold: impedance alone; or"
+        " any other, see `pliant list controllers`",
     )
     robot: str = Field(default="leg3", description="catalogue name, or path of a URDF or MJCF file")
     frame: str = Field(default="foot", description="frame that presses; it carries the force sensor")
@@ -214,6 +227,12 @@ class HapticConfig(CaseConfig):
     exploration: ExplorationConfig = ExplorationConfig()
     planner: Planner = Planner()
     hardware: Hardware = Hardware()
+    control: dict[str, Any] = Field(
+        default={}, description="changes to the controller's parameters beside `impedance` and `exploration`"
+    )
+    torque_step: float | None = quantity(
+        None, "1", "largest change of a joint's torque per period, as a share of its limit; none: unbounded", gt=0.0
+    )
     start: tuple[float, ...] | None = quantity(None, "rad", "joint positions at the start; none: the robot's home")
     steps: tuple[Step, ...] = Field(
         min_length=1, description="what the user does, in order of time; the first one gives target and force"
@@ -226,9 +245,53 @@ class HapticConfig(CaseConfig):
     @field_validator("controller")
     @classmethod
     def _is_known(cls, name: str) -> str:
-        if name not in CONTROLLERS:
-            raise ValueError(f"this study has no controller {name!r}; {options(CONTROLLERS, name)}")
+        try:
+            find_controller(name)
+        except PliantError as error:
+            raise ValueError(str(error)) from None
         return name
+
+    @property
+    def entry(self) -> ControllerEntry[Any]:
+        """The chosen controller."""
+        return find_controller(self.controller)
+
+    @property
+    def pressing(self) -> bool:
+        """Whether a force is asked for at some time."""
+        return any(step.force is not None and any(step.force) for step in self.steps)
+
+    @property
+    def believed(self) -> Believed:
+        """What the controller may know."""
+        return Believed(
+            frames=(self.frame,),
+            period=self.period,
+            oriented=False,
+            presses=self.frame if self.pressing else None,
+            compensation=self.hardware.compensation,
+            sensing_delay=self.hardware.force_delay,
+            computation_delay=self.hardware.command_delay,
+            tunings={self.frame: self.impedance.tuning()},
+        )
+
+    def controller_parameters(self, robot: Robot) -> ControllerConfig:
+        """Those of the chosen controller: the study's for its family, otherwise what suits the task; then `control`."""
+        entry = self.entry
+        bases = {FAMILY: self._recipe()}
+        base = bases.get(entry.family)
+        if base is None:
+            return parameters_for(entry, robot, self.believed, self.control)
+        return merged(entry.over(base), self.control)
+
+    def _recipe(self) -> ControllerConfig:
+        own = self.impedance
+        foot = FrameTaskConfig(
+            frame=self.frame,
+            translation=TranslationConfig(stiffness=own.stiffness, force_max=own.force_max, range=own.range),
+            profile=own.profile,
+        )
+        return HapticRecipe(impedance=StackConfig(tasks={TASK: foot}, law=own.law), exploration=self.exploration)
 
     @model_validator(mode="after")
     def _is_in_order(self) -> Self:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError
 from pliant.spatial import Array
-from pliant.studies.haptic.config import Check, HapticConfig
+from pliant.studies.haptic.config import JUDGED, TASK, Check, HapticConfig
 from pliant.studies.haptic.scene import BOX
 from pliant.telemetry import metrics
 from pliant.telemetry.log import Log
@@ -76,7 +76,7 @@ Window = npt.NDArray[np.bool_]
 def measure(config: HapticConfig, log: Log) -> tuple[Metric, ...]:
     """One metric per check. Targets are pliant's: control arms have none."""
     signals = Signals.of(config, log)
-    return tuple(_metric(check, signals, config.controller == "haptic") for check in config.checks)
+    return tuple(_metric(check, signals, config.controller == JUDGED) for check in config.checks)
 
 
 def _metric(check: Check, signals: Signals, judged: bool) -> Metric:
@@ -183,7 +183,9 @@ def _wanted(check: Check) -> float:
 
 
 def _share(check: Check, signals: Signals, window: Window) -> float:
-    force = np.abs(signals.channel("foot/force", (3,)))
+    if f"{TASK}/force" not in signals.log:
+        return math.nan  # a controller without an impedance at the foot
+    force = np.abs(signals.channel(f"{TASK}/force", (3,)))
     bound = signals.channel(f"reference/{signals.config.frame}/force_max", (3,))
     return float(np.max((force / bound)[window]))
 

@@ -11,7 +11,7 @@ from pliant.references.planners.workspace import Workspace, workspace_of
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
-from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.config import FAMILY, HapticConfig
 from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
 from pliant.studies.haptic.script import Wish, wishes
 
@@ -62,7 +62,9 @@ def _inertia(robot: Robot, frame: str, q: Array) -> Array:
 
 
 def _exploration_gain(config: HapticConfig) -> list[str]:
-    if config.hardware.bandwidth is None or config.controller != "haptic":
+    entry = config.entry
+    adaptive = entry.family == FAMILY and "exploration" not in entry.fixed  # one that is fixed is printed, or none
+    if config.hardware.bandwidth is None or not adaptive:
         return []
     safe = _SAFE_GAIN * 2.0 * math.pi * config.hardware.bandwidth
     if config.exploration.gain <= safe * (1.0 + 1e-9):

@@ -9,7 +9,7 @@ from pliant.experiments.base import Experiment, Result, Study
 from pliant.studies.haptic import draw
 from pliant.studies.haptic.build import build
 from pliant.studies.haptic.cases import CASES
-from pliant.studies.haptic.config import CONTROLLERS, HapticConfig
+from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.delays import delay_runs
 from pliant.studies.haptic.measure import measure
 from pliant.studies.haptic.parameters import parameter_runs
@@ -26,7 +26,6 @@ class HapticStudy(Study[HapticConfig]):
     name = "haptic"
     title = "haptic exploration with a three-joint leg (Tiseo et al. 2021)"
     cases = CASES
-    controllers = CONTROLLERS
 
     def build(self, config: HapticConfig) -> Experiment:
         return build(config)

@@ -2,42 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from pliant.controllers.joint_limits import with_joint_limits
 from pliant.errors import ConfigError
-from pliant.estimation import (
-    Butterworth,
-    EnvironmentEstimator,
-    FilteredEstimator,
-    FitConfig,
-    JointStateFilter,
-    MomentumObserver,
-    WrenchEstimator,
-)
-from pliant.experiments.base import Experiment
 from pliant.experiments.model_error import with_mass_error
-from pliant.interfaces import Controller, Estimator, Plant
-from pliant.mpc import MpcConfig, MpcController
-from pliant.references.phases import Lookahead
+from pliant.interfaces import Plant
 from pliant.references.postures.ik_mink import MinkSolver
 from pliant.references.postures.inverse_kinematics import Target, joint_box
-from pliant.robot import Robot, Tool
+from pliant.robot import Robot
 from pliant.simulation import ForceSensor, ImperfectPlant, MujocoPlant, Push, Scene, Surface, table
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
-from pliant.studies.polishing.config import BALL_RADIUS, FRAME, PolishingConfig, Pushes
+from pliant.studies.polishing.config import FRAME, PolishingConfig, Pushes
 from pliant.studies.polishing.source import TURNED_DOWN, polishing_source, touching_point
-from pliant.telemetry.schema import Channel
+from pliant.wiring.estimators import Sensing
+from pliant.wiring.experiment import Experiment
+from pliant.wiring.wire import Offer, wired
 
 SPEED_STOP = 2.0
 """multiple of the joints' speed limits at which the robot stops and the run counts as failed"""
-_JOINT_MEMORY = 0.3  # s
-_SLIDING = 0.02  # m/s; faster than that, an unknown tilt looks like a soft table
 
 
 def build(config: PolishingConfig) -> Experiment:
@@ -46,33 +32,22 @@ def build(config: PolishingConfig) -> Experiment:
     Raises:
         PliantError: a robot, frame or parameter that does not fit.
     """
-    robot = robot_of(config)
-    parameters = config.parameters()
-    believed = with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses"))
-    controller: Controller[Any] = config.entry.build(believed, parameters, config.period)
-    channels: Mapping[str, Any] = getattr(controller, "channels", {})
-    lookahead = Lookahead(parameters.horizon, parameters.dt, lead_of(controller))
-    return Experiment(
+    robot, settings = config.robot_model(), config.estimation
+    offer = Offer(
         robot=robot,
-        plant=plant_of(config, robot),
-        estimator=estimator_of(config, believed, parameters),
-        source=polishing_source(config, robot, lookahead),
-        controller=with_joint_limits(controller, robot, config.joint_limits),
-        channels=tuple(Channel(name, about.unit) for name, about in channels.items()),
-        warnings=config.entry.advise(robot, parameters, config.period),
+        model=with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses")),
+        believed=config.believed,
+        plant=lambda felt: plant_of(config, robot),
+        source=lambda lookahead: polishing_source(config, robot, lookahead),
+        sensing=Sensing(
+            wrench_cutoff=settings.wrench_cutoff,
+            joint_memory=settings.joint_memory,
+            observer_gain=settings.observer_gain,
+        ),
+        torque_step=config.torque_step,
+        joint_limits=config.joint_limits,
     )
-
-
-def lead_of(controller: Controller[Any]) -> float:
-    """s from now to the effect of the controller's command, as far as it knows."""
-    return controller.compensator.lead if isinstance(controller, MpcController) else 0.0
-
-
-def robot_of(config: PolishingConfig, unknown_mass: float = 0.0) -> Robot:
-    """The arm with its tool; the real tool may be heavier than the known one."""
-    tool = Tool(frame=FRAME)
-    heavier = Tool(frame=FRAME, mass=tool.mass + unknown_mass)
-    return Robot.load(config.robot, locked=config.locked, tool=heavier).with_contact(FRAME, BALL_RADIUS)
+    return wired(config.entry, config.parameters(), offer)
 
 
 def plant_of(config: PolishingConfig, robot: Robot) -> Plant[Any]:
@@ -81,7 +56,7 @@ def plant_of(config: PolishingConfig, robot: Robot) -> Plant[Any]:
     point = (config.table.x, 0.0, config.table.height)
     start = _start(config, robot)
     physics = MujocoPlant(
-        robot_of(config, config.unknown_mass),
+        config.robot_model(config.unknown_mass),
         Scene((table(point, config.table.tilt, surface),)),
         period=config.period if config.perfect else config.physics_step,
         physics_step=config.physics_step,
@@ -95,28 +70,6 @@ def plant_of(config: PolishingConfig, robot: Robot) -> Plant[Any]:
         return physics
     holding = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), start))
     return ImperfectPlant(physics, config.imperfections, seed=config.seed, period=config.period, holding_torque=holding)
-
-
-def estimator_of(config: PolishingConfig, robot: Robot, parameters: MpcConfig) -> Estimator[Any]:
-    """What the controller needs: the contact wrench always, a disturbance and an environment where it asks for them."""
-    wanted, settings = parameters.compensation, config.estimation
-    estimator: Estimator[Any] = WrenchEstimator(robot)
-    if settings.wrench_cutoff is not None:
-        estimator = FilteredEstimator(estimator, wrench=Butterworth(settings.wrench_cutoff, config.period))
-    memory = settings.joint_memory
-    if memory is None:
-        memory = _JOINT_MEMORY if wanted.any else 0.0
-    if memory > 0.0:
-        estimator = JointStateFilter(estimator, memory)
-    if wanted.environment:
-        fit = FitConfig(cutoff=30.0)
-        estimator = EnvironmentEstimator(estimator, robot, FRAME, config.period, config=fit, sliding=_SLIDING)
-    if wanted.disturbance:
-        late = round(config.imperfections.sensing.delay / config.period)
-        explained = "normal" if parameters.contact.dimension == 1 else "all"
-        gain = settings.observer_gain
-        estimator = MomentumObserver(estimator, robot, gain=gain, contact=explained, late_readings=late)
-    return estimator
 
 
 def _pushes(pushes: Pushes, config: PolishingConfig) -> tuple[Push, ...]:

@@ -144,11 +144,11 @@ def _stiffness(case: PolishingConfig, seeds: int | None) -> Runs:
 def _force_weight(case: PolishingConfig, seeds: int | None) -> Runs:
     rows: list[tuple[str, str, Mapping[str, Any]]] = []
     for name in ALL:
-        force = merged(case, {"controller": name}).parameters().costs.force
+        force = merged(case, {"controller": name}).parameters().model_dump()["costs"]["force"]
         for factor in (0.01, 0.1, 1.0, 10.0):
-            weights = {"weight": factor * force.weight}
-            if force.terminal is not None:
-                weights["terminal"] = factor * force.terminal
+            weights = {"weight": factor * force["weight"]}
+            if force["terminal"] is not None:
+                weights["terminal"] = factor * force["terminal"]
             rows.append((name, f"× {factor:g}", {"control": {"costs": {"force": weights}}}))
     return _varied(case, seeds, rows)
 

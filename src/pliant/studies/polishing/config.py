@@ -6,19 +6,24 @@ contact approach", 2024, sections VI and VII. What the paper leaves open (height
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Literal
 
 from pydantic import Field
 
-from pliant.entries import ControllerEntry, find_entry
+from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.config import Config, merged
-from pliant.mpc import CONTROLLERS, MpcConfig
+from pliant.robot import Robot, Tool
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.tuned import PRESETS
+from pliant.wiring.registry import find_controller
+from pliant.wiring.wire import parameters_for
 
 FRAME = "tool"
 BALL_RADIUS = 0.015  # m; the contact frame is its centre
+PHASES: Mapping[str, bool] = {"reach": False, "track": False, "ramp": True, "contact": True, "circle": True}
+"""name of each phase → whether the tool touches in it"""
 
 
 class Table(Config):
@@ -146,6 +151,12 @@ class PolishingConfig(CaseConfig):
         description="of δ_o in controllers that predict: believed minus true",
         json_schema_extra={"unit": "s"},
     )
+    torque_step: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
+        json_schema_extra={"unit": "1"},
+    )
     pushes: Pushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
     estimation: Estimation = Estimation()
     preset: Literal["tuned", "perfect", "paper"] = Field(
@@ -160,23 +171,34 @@ class PolishingConfig(CaseConfig):
     @property
     def entry(self) -> ControllerEntry[Any]:
         """The chosen controller."""
-        return find_entry(CONTROLLERS, self.controller)
+        return find_controller(self.controller)
 
     @property
     def perfect(self) -> bool:
         """Whether sensors, drives and computation are perfect."""
         return self.imperfections == Imperfections()
 
-    def parameters(self) -> MpcConfig:
+    @property
+    def believed(self) -> Believed:
+        """What the controller may know."""
+        return Believed(
+            frames=(FRAME,),
+            period=self.period,
+            presses=FRAME,
+            sensing_delay=self.imperfections.sensing.delay,
+            computation_delay=max(self.imperfections.computation_delay + self.delay_error, 0.0),
+            phases=PHASES,
+        )
+
+    def robot_model(self, unknown_mass: float = 0.0) -> Robot:
+        """The arm with its tool; the real tool may be heavier than the known one."""
+        tool = Tool(frame=FRAME)
+        heavier = Tool(frame=FRAME, mass=tool.mass + unknown_mass)
+        return Robot.load(self.robot, locked=self.locked, tool=heavier).with_contact(FRAME, BALL_RADIUS)
+
+    def parameters(self) -> ControllerConfig:
         """The controller's parameters: its defaults, those of this study, what is known of the robot's delays, then
         `control`."""
-        changes = PRESETS[self.preset].get(self.controller, {})
-        config: MpcConfig = merged(merged(self.entry.default, changes), self.control)
-        chosen = self.control.get("compensation", {})
-        if not config.compensation.delay or "sensing_delay" in chosen or "computation_delay" in chosen:
-            return config
-        delays = {
-            "sensing_delay": self.imperfections.sensing.delay,
-            "computation_delay": max(self.imperfections.computation_delay + self.delay_error, 0.0),
-        }
-        return merged(config, {"compensation": delays})
+        entry = self.entry
+        base = merged(entry.default, PRESETS[self.preset].get(self.controller, {}))
+        return parameters_for(entry, self.robot_model(), self.believed, self.control, base)

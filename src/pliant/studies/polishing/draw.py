@@ -36,12 +36,13 @@ def _history(config: PolishingConfig, log: Log) -> Figure:
     panels = [
         Panel("normal force, N", [Curve("true", time, force), Curve("reference", time, wanted, "reference")]),
         Panel("position error, mm", [Curve("xy"[axis], time, error[:, axis]) for axis in range(2)]),
-        Panel("SQP iterations", [Curve("", log.time("mpc/iterations"), log["mpc/iterations"])]),
     ]
-    disturbance = log["mpc/disturbance"]
-    if np.any(disturbance):
+    if "mpc/disturbance" in log and np.any(log["mpc/disturbance"]):
+        disturbance = log["mpc/disturbance"]
         curves = [Curve(f"joint {joint + 1}", time, values) for joint, values in enumerate(disturbance.T)]
-        panels.insert(2, Panel("disturbance, N·m", curves))
+        panels.append(Panel("disturbance, N·m", curves))
+    if "mpc/iterations" in log:
+        panels.append(Panel("SQP iterations", [Curve("", log.time("mpc/iterations"), log["mpc/iterations"])]))
     title = " · ".join(part for part in (config.case, config.controller, config.variant) if part)
     return time_series(panels, title=title, phases=log.phases())
 

@@ -28,9 +28,13 @@ def _force_factor(config: PolishingConfig) -> float:
 
 
 _SWEPT: Mapping[str, tuple[Callable[[PolishingConfig], float], str, Callable[[str], bool]]] = {
-    "horizon": (lambda c: float(c.parameters().horizon), "nodes N of 3 ms", lambda v: "over" not in v),
+    "horizon": (lambda c: float(c.parameters().model_dump()["horizon"]), "nodes N of 3 ms", lambda v: "over" not in v),
     "force-weight": (_force_factor, "factor of the force weight", lambda v: True),
-    "iterations": (lambda c: float(c.parameters().max_iterations), "most SQP iterations per solve", lambda v: True),
+    "iterations": (
+        lambda c: float(c.parameters().model_dump()["max_iterations"]),
+        "most SQP iterations per solve",
+        lambda v: True,
+    ),
 }
 """case → what varies, the label of its axis, which variants belong to it"""
 _IN_ROWS = (

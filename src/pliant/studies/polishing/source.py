@@ -8,7 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.references.phases import Lookahead, PhasedSource, TaskPhase
+from pliant.interfaces import Lookahead
+from pliant.references.phases import PhasedSource, TaskPhase
 from pliant.references.trajectories.shapes import circle
 from pliant.references.trajectories.trajectory import Hold
 from pliant.references.trajectories.waypoints import Waypoints, wrench_steps
@@ -20,7 +21,7 @@ TURNED_DOWN = rpy(math.pi, 0.0, math.pi)
 """R_world_tool with the tool pointing down"""
 
 
-def polishing_source(config: PolishingConfig, robot: Robot, lookahead: Lookahead) -> PhasedSource:
+def polishing_source(config: PolishingConfig, robot: Robot, lookahead: Lookahead | None) -> PhasedSource:
     """References of the task: reach, track (descend), ramp, contact (hold), circle or force steps.
 
     Raises:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from pliant.experiments.base import Experiment, Result, Study
 from pliant.experiments.tuning import Tuning
-from pliant.mpc import CONTROLLERS
 from pliant.studies.polishing import draw, overview, tables
 from pliant.studies.polishing.build import build
 from pliant.studies.polishing.cases import CASES, runs_of
@@ -24,7 +23,6 @@ class Polishing(Study[PolishingConfig]):
     name = "polishing"
     title = "press on a table and draw a circle: classical, torque-feedback, force-feedback and offset-free MPC"
     cases = CASES
-    controllers = tuple(CONTROLLERS)
     worst = WORST
 
     def runs(self, case: str, seeds: int | None = None) -> Sequence[PolishingConfig]:

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from pliant.errors import ConfigError
 from pliant.experiments.base import Result
 from pliant.experiments.config import merged
 from pliant.experiments.tuning import Range, Tuning
-from pliant.mpc.costs import Term
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.targets import BEST
@@ -33,7 +33,10 @@ _TERMINAL = 5.0
 def tuning_of(case: PolishingConfig, controller: str) -> Tuning:
     """The search over a controller's weights; force weights only where they change anything (force feedback)."""
     config = merged(case, {"controller": controller})
-    parameters = {**_COMMON, **(_FORCE if config.parameters().kind == "force_feedback" else {})}
+    now = config.parameters().model_dump()
+    if "costs" not in now:
+        raise ConfigError(f"controller {controller!r} has no weights that this study knows how to search")
+    parameters = {**_COMMON, **(_FORCE if now["kind"] == "force_feedback" else {})}
     return Tuning(parameters, _runs(config), _objective, _start(config, parameters), _changes)
 
 
@@ -62,10 +65,10 @@ def _objective(results: Sequence[Result]) -> float:
 
 def _start(config: PolishingConfig, parameters: Mapping[str, Range]) -> Mapping[str, float]:
     """Today's values, moved into the ranges where they lie outside."""
-    now = config.parameters()
-    circle = now.phases["circle"].translation or Term()
-    values = {name: getattr(now.costs, name).weight for name in parameters if name != "circle"}
-    values["circle"] = circle.weight
+    now = config.parameters().model_dump()
+    circle = now["phases"]["circle"]["translation"] or {"weight": 0.0}
+    values = {name: float(now["costs"][name]["weight"]) for name in parameters if name != "circle"}
+    values["circle"] = float(circle["weight"])
     return {name: min(max(values[name], about.low), about.high) for name, about in parameters.items()}
 
 

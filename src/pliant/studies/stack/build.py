@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 
-from pliant.controllers.config import StackConfig as StackParameters
-from pliant.controllers.joint_limits import with_joint_limits
 from pliant.controllers.profiles import linear_range
-from pliant.controllers.step_limit import CHANNELS, StepLimit
 from pliant.errors import ConfigError
-from pliant.estimation import DirectEstimator
-from pliant.experiments.base import Experiment
 from pliant.experiments.model_error import with_mass_error
+from pliant.interfaces import Lookahead, ReferenceSource
+from pliant.references.foreseen import Foreseen
 from pliant.references.postures.posture import PostureOptions
 from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.retuned import Retuned, TuningChange
@@ -20,11 +20,13 @@ from pliant.references.trajectories.shapes import lemniscate, sine_line
 from pliant.references.trajectories.trajectory import Hold
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
-from pliant.simulation import JointEffects, MujocoPlant, Push, Scene, Surface, random_pushes, wall
+from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Push, Scene, Surface, random_pushes, wall
 from pliant.simulation.seeding import generator
 from pliant.spatial import frame_with_z_along
 from pliant.studies.stack.config import Path, StackConfig
-from pliant.telemetry.schema import Channel
+from pliant.wiring.estimators import Sensing
+from pliant.wiring.experiment import Experiment
+from pliant.wiring.wire import Offer, wired
 
 TOUCH_RADIUS = 0.01  # m of the sphere with which the tool touches the wall
 _CENTRE = (0.0, -0.6, 0.5)  # m, [Stack] sec. III-A
@@ -42,33 +44,35 @@ def build(config: StackConfig) -> Experiment:
     robot = Robot.load(config.robot).with_contact(tool, TOUCH_RADIUS)
     robot.frame_id(elbow)
     source = _references(config, robot)
-    parameters = config.parameters()
-    plant = MujocoPlant(
-        robot,
-        _scene(config),
-        period=config.period,
-        physics_step=config.physics_step,
-        start=source.start,
-        joints=JointEffects(config.joints.friction, config.joints.damping, config.joints.compensation),
-        pushes=_pushes(config, rng_pushes),
-        observe=[tool, elbow],
-    )
-    believed = with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses"))
-    controller = config.entry.build(believed, parameters, config.period)
-    channels = tuple(Channel(name, about.unit) for name, about in getattr(controller, "channels", {}).items())
-    controller = with_joint_limits(controller, robot, config.joint_limits)
-    if config.torque_step is not None:
-        controller = StepLimit(controller, robot, config.torque_step)
-        channels += tuple(Channel(name, unit) for name, unit in CHANNELS.items())
-    return Experiment(
+    offer = Offer(
+        model=with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses")),
         robot=robot,
-        plant=plant,
-        estimator=DirectEstimator(velocity_gain=config.joints.velocity_filter),
-        source=source if config.retuning is None else Retuned(source, _schedule(config, rng_tuning)),
-        controller=controller,
-        channels=channels,
-        warnings=config.entry.advise(robot, parameters, config.period),
+        believed=replace(config.believed, frames=(tool, elbow)),
+        plant=lambda felt: MujocoPlant(
+            robot,
+            _scene(config),
+            period=config.period,
+            physics_step=config.physics_step,
+            start=source.start,
+            joints=JointEffects(config.joints.friction, config.joints.damping, config.joints.compensation),
+            sensors=[ForceSensor(tool)] if felt else [],
+            pushes=_pushes(config, rng_pushes),
+            observe=[tool, elbow],
+        ),
+        source=lambda lookahead: _changed(_foreseen(source, lookahead), config, rng_tuning),
+        sensing=Sensing(felt=False, velocity_gain=config.joints.velocity_filter),
+        torque_step=config.torque_step,
+        joint_limits=config.joint_limits,
     )
+    return wired(config.entry, config.parameters(), offer)
+
+
+def _foreseen(source: PostureSource, lookahead: Lookahead | None) -> ReferenceSource[Any]:
+    return source if lookahead is None else Foreseen(source, lookahead)
+
+
+def _changed(source: ReferenceSource[Any], config: StackConfig, rng: np.random.Generator) -> ReferenceSource[Any]:
+    return source if config.retuning is None else Retuned(source, _schedule(config, rng))
 
 
 def motion(path: Path, frame: str) -> FrameMotion:
@@ -116,16 +120,16 @@ def _pushes(config: StackConfig, rng: np.random.Generator) -> tuple[Push, ...]:
 
 def _schedule(config: StackConfig, rng: np.random.Generator) -> list[TuningChange]:
     """Random factors on stiffness and force of each axis, a few times a second."""
-    parameters = config.parameters()
-    if config.retuning is None or not isinstance(parameters, StackParameters):
-        raise ConfigError(f"only a stack can be retuned, got controller {config.controller!r}")
+    tunings = config.parameters().impedances()
+    if config.retuning is None or not tunings:
+        raise ConfigError(f"only impedances can be retuned, controller {config.controller!r} has none")
     low, high = np.log(config.retuning.factor)
     changes: list[TuningChange] = []
     for time in np.arange(config.path.ramp, config.duration, 1.0 / config.retuning.rate):
-        for task in parameters.frame_tasks():
-            factor = np.exp(rng.uniform(low, high, (2, task.axes)))
-            stiffness = task.tuning.stiffness * factor[0]
-            bound = np.maximum(task.tuning.force_max * factor[1], stiffness * linear_range(task.tuning))
-            tuning = ImpedanceTuning(stiffness, bound, task.tuning.range, task.tuning.linear_range)
-            changes.append(TuningChange(float(time), task.frame, tuning))
+        for frame, now in tunings.items():
+            factor = np.exp(rng.uniform(low, high, (2, now.axes)))
+            stiffness = now.stiffness * factor[0]
+            bound = np.maximum(now.force_max * factor[1], stiffness * linear_range(now))
+            tuning = ImpedanceTuning(stiffness, bound, now.range, now.linear_range)
+            changes.append(TuningChange(float(time), frame, tuning))
     return changes

@@ -11,14 +11,14 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from pliant.controllers.config import OperationalSpaceConfig
-from pliant.controllers.config import StackConfig as StackParameters
 from pliant.controllers.presets import SOFT_STACK, STIFF_STACK, TABLE_I_ROBOT, TABLE_I_SIMULATION
-from pliant.controllers.registry import CONTROLLERS
-from pliant.entries import ControllerConfig, ControllerEntry, find_entry
+from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.config import Config, merged
+from pliant.robot import Robot
+from pliant.wiring.registry import find_controller
+from pliant.wiring.wire import parameters_for
 
 PathKind = Literal["figure8", "line", "stretch", "hold"]
 
@@ -86,14 +86,19 @@ class Retuning(Config):
     )
 
 
-PRESETS: Mapping[str, ControllerConfig] = {
-    "stiff": STIFF_STACK,
-    "soft": SOFT_STACK,
-    "table-1-simulation": TABLE_I_SIMULATION,
-    "table-1-robot": TABLE_I_ROBOT,
+FRAMES = ("flange", "elbow")
+"""the tool's and the elbow's frame, where the controller has none of its own"""
+
+PRESETS: Mapping[str, Mapping[str, ControllerConfig]] = {
+    "stack": {
+        "stiff": STIFF_STACK,
+        "soft": SOFT_STACK,
+        "table-1-simulation": TABLE_I_SIMULATION,
+        "table-1-robot": TABLE_I_ROBOT,
+    }
 }
-"""name → parameters of the two tasks; "stiff" and "soft" are pliant's own for the simulated and the hardware-like
-robot"""
+"""family of controllers → name → parameters of the two tasks; "stiff" and "soft" are pliant's own for the simulated and
+the hardware-like robot. Other families start from what suits the task"""
 
 
 class StackConfig(CaseConfig):
@@ -144,31 +149,32 @@ class StackConfig(CaseConfig):
     @property
     def entry(self) -> ControllerEntry[Any]:
         """The chosen controller."""
-        return find_entry(CONTROLLERS, self.controller)
+        return find_controller(self.controller)
+
+    @property
+    def believed(self) -> Believed:
+        """What the controller may know."""
+        return Believed(frames=FRAMES, period=self.period, compensation=self.joints.compensation)
 
     def parameters(self) -> ControllerConfig:
         """The controller's parameters: preset, then `control`. Raises ConfigError for an unknown key or a bad value."""
-        base = self.entry.default
-        if isinstance(base, StackParameters):
-            base = PRESETS[self.preset].model_copy(update={"law": base.law})
-        elif isinstance(base, OperationalSpaceConfig) and self.joints.compensation != "none":
-            base = base.model_copy(
-                update={"compensation": "none" if "coriolis" in self.joints.compensation else "coriolis"}
-            )
-        return merged(base, self.control)
+        entry = self.entry
+        preset = PRESETS.get(entry.family, {}).get(self.preset)
+        if preset is None:
+            return parameters_for(entry, Robot.load(self.robot), self.believed, self.control)
+        return merged(entry.over(preset), self.control)
 
     def frames(self) -> tuple[str, str]:
         """Tool and elbow frame: those of the first two tasks."""
-        preset = PRESETS[self.preset]
-        assert isinstance(preset, StackParameters)
-        chosen = self.parameters()
-        tasks = chosen.frame_tasks() if isinstance(chosen, StackParameters) else preset.frame_tasks()
-        if len(tasks) != 2:
-            raise ConfigError(f"this study drives two frames, a tool and an elbow; control.tasks names {len(tasks)}")
-        return tasks[0].frame, tasks[1].frame
+        preset = PRESETS.get(self.entry.family, {}).get(self.preset)
+        chosen = FRAMES if preset is None else self.parameters().driven_frames()
+        if len(chosen) != 2:
+            raise ConfigError(f"this study drives two frames, a tool and an elbow; control.tasks names {len(chosen)}")
+        return chosen[0], chosen[1]
 
     @model_validator(mode="after")
     def _has_good_parameters(self) -> Self:
+        self.parameters()
         self.frames()
         return self
 

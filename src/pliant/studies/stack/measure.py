@@ -18,6 +18,9 @@ from pliant.telemetry.log import Log
 from pliant.telemetry.recorder import Recorder
 from pliant.telemetry.summary import Metric
 
+JUDGED = "stack"
+"""the controller that the targets are for"""
+
 PAPER_RMSE: Mapping[str, tuple[float, float, float]] = {
     "figure8-plain": (5.6, 4.6, 6.1),
     "figure8-gazebo": (5.6, 4.6, 6.1),
@@ -43,7 +46,7 @@ TORQUE_STEP_TARGET = {"figure8-wall": 15.0, "singular": 15.0}
 
 def measure(config: StackConfig, robot: Robot, log: Log) -> tuple[Metric, ...]:
     """Metrics from one second after the ramp to the end, on true signals."""
-    case, pliant = config.case, config.controller == "stack"
+    case, pliant = config.case, config.controller == JUDGED
     paper = PAPER_RMSE.get(case, (None,) * 3)
     target = TARGET_RMSE.get(case, (None,) * 3) if pliant else (None,) * 3
     found = [
@@ -73,7 +76,7 @@ def _against_no_wall(config: StackConfig, log: Log) -> list[Metric]:
     """How much the wall, which stops x, disturbs the axes that stay free: the same run without it beside."""
     free = _rmse_without_wall(config.model_copy(update={"wall": None}).model_dump_json())
     here = tracking_rmse(config, log)
-    bound = 0.5 if config.controller == "stack" else None
+    bound = 0.5 if config.controller == JUDGED else None
     return [
         Metric(f"RMSE {'xyz'[axis]}: change by the wall", float(abs(here[axis] - free[axis])), "mm", target=bound)
         for axis in (1, 2)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from pliant.controllers.registry import CONTROLLERS
 from pliant.experiments.base import Experiment, Result, Study
 from pliant.experiments.config import merged
 from pliant.experiments.tuning import Tuning
@@ -13,7 +12,7 @@ from pliant.robot import Robot
 from pliant.studies.stack import draw
 from pliant.studies.stack.build import build
 from pliant.studies.stack.config import CASES, StackConfig
-from pliant.studies.stack.measure import measure
+from pliant.studies.stack.measure import JUDGED, measure
 from pliant.studies.stack.tuning import tuning_of
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
@@ -28,7 +27,6 @@ class StackStudy(Study[StackConfig]):
     name = "stack"
     title = "stack of passive task-space controllers on a 7-joint arm (Tiseo et al. 2020)"
     cases = CASES
-    controllers = tuple(CONTROLLERS)
 
     def build(self, config: StackConfig) -> Experiment:
         return build(config)
@@ -49,7 +47,7 @@ class StackStudy(Study[StackConfig]):
         return runs
 
     def shows(self, config: StackConfig) -> bool:
-        return super().shows(config) and config.controller == "stack"
+        return super().shows(config) and config.controller == JUDGED
 
     def metrics(self, config: StackConfig, log: Log) -> tuple[Metric, ...]:
         return measure(config, Robot.load(config.robot), log)

@@ -62,7 +62,7 @@ def tuning_of(case: StackConfig, controller: str) -> Tuning:
         raise ConfigError(f"controller {controller!r} of study 'stack' has no search; {options(_SEARCHES, controller)}")
     search = _SEARCHES[controller]
     config = merged(case, {"controller": controller, "control": {}, "duration": _DURATION})
-    preset = PRESETS[config.preset].model_dump()["tasks"]
+    preset = PRESETS["stack"][config.preset].model_dump()["tasks"]
     ee = preset["ee"]["translation"]
     begin = {
         "ee stiffness": ee["stiffness"],

@@ -1,0 +1,63 @@
+"""What a predictive controller wants to be told, and parameters that suit a task."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pliant.entries import Believed
+from pliant.interfaces import Lookahead, Needs
+from pliant.mpc.config import Compensation, MpcConfig
+from pliant.mpc.costs import Phase
+from pliant.robot import Robot
+
+
+def needs_of(config: MpcConfig) -> Needs:
+    """What a configuration wants; the preview begins now."""
+    compensation = config.compensation
+    explained = "normal" if config.contact.dimension == 1 else "all"
+    return Needs(
+        preview=Lookahead(config.horizon, config.dt),
+        wrench=config.kind == "force_feedback",
+        disturbance=explained if compensation.disturbance else "none",
+        environment=compensation.environment,
+        calm=compensation.any,
+        torque=config.kind == "torque_feedback",
+        posture=config.posture == "reference",
+    )
+
+
+def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfig:
+    """The task's first frame, period and phases; the robot's delays, where the controller predicts over them.
+
+    A phase that the configuration does not know has the costs of its last phase with contact, or of its first one
+    without.
+    """
+    named = bool(believed.phases)
+    return config.model_copy(
+        update={
+            "frame": believed.frames[0],
+            "period": max(config.period, believed.period),
+            "gravity": believed.compensation == "none",
+            "phase_by": "name" if named else "contact",
+            "phases": _phases(config, believed.phases) if named else config.phases,
+            "compensation": _timed(config.compensation, believed),
+        }
+    )
+
+
+def _phases(config: MpcConfig, wanted: Mapping[str, bool]) -> dict[str, Phase]:
+    free = next((phase for phase in config.phases.values() if not phase.contact), Phase())
+    touching = next((phase for phase in reversed(config.phases.values()) if phase.contact), Phase(contact=True))
+    unknown = {name: touching if touches else free for name, touches in wanted.items() if name not in config.phases}
+    return config.phases | unknown
+
+
+def _timed(compensation: Compensation, believed: Believed) -> Compensation:
+    """The delays that are believed, and an average over whole periods."""
+    update: dict[str, float] = {}
+    if compensation.delay:
+        update |= {"sensing_delay": believed.sensing_delay, "computation_delay": believed.computation_delay}
+    count = compensation.averaging / believed.period
+    if abs(count - round(count)) > 1e-6:
+        update["averaging"] = max(round(count), 1) * believed.period
+    return compensation.model_copy(update=update)

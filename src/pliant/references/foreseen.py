@@ -1,0 +1,61 @@
+"""A preview for sources whose references are functions of time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from pliant.interfaces import Lookahead, ReferenceSource
+from pliant.references.source import Started
+from pliant.signals import Estimate, Preview, Reference
+
+
+class Timed(Protocol):
+    """A source that says its reference at any time."""
+
+    def at(self, time: float, elapsed: float) -> Reference:
+        """The reference at `time` of the loop's clock, `elapsed` s after the start."""
+        ...
+
+
+class Foreseen(ReferenceSource[Started]):
+    """A timed source's references with a preview of its first task.
+
+    Args:
+        inner: where the references come from.
+        lookahead: instants of the preview.
+    """
+
+    def __init__(self, inner: Timed, lookahead: Lookahead) -> None:
+        self.inner, self.lookahead = inner, lookahead
+
+    def init(self, estimate: Estimate) -> Started:
+        return Started(estimate.time)
+
+    def step(self, estimate: Estimate, state: Started) -> tuple[Reference, Started]:
+        elapsed, ahead = estimate.time - state.time, self.lookahead
+        now = self.inner.at(estimate.time, elapsed)
+        delays = ahead.lead + ahead.step * np.arange(ahead.nodes + 1, dtype=np.float64)
+        later = [self.inner.at(estimate.time + delay, elapsed + delay) for delay in delays.tolist()]
+        return replace(now, preview=_preview(later)), state
+
+
+def _preview(later: Sequence[Reference]) -> Preview | None:
+    """None where the first task leaves the orientation free: a preview has one at each node."""
+    tasks = [reference.tasks[0] for reference in later]
+    rotations = [task.rotation for task in tasks if task.rotation is not None]
+    if len(rotations) < len(tasks):
+        return None
+    postures = [reference.posture for reference in later if reference.posture is not None]
+    return Preview(
+        time=np.array([reference.time for reference in later]),
+        position=np.array([task.position for task in tasks]),
+        rotation=np.array(rotations),
+        velocity=np.array([task.velocity for task in tasks]),
+        wrench=np.array([task.wrench for task in tasks]),
+        phase=tuple(reference.phase for reference in later),
+        posture=np.array(postures) if len(postures) == len(later) else None,
+    )

@@ -1,0 +1,70 @@
+"""The chain of estimators that a controller needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pliant.entries import Believed
+from pliant.estimation import (
+    Butterworth,
+    DirectEstimator,
+    EnvironmentEstimator,
+    FilteredEstimator,
+    FitConfig,
+    JointStateFilter,
+    MomentumObserver,
+    WrenchEstimator,
+)
+from pliant.interfaces import Estimator, Needs
+from pliant.robot import Robot
+
+_JOINT_MEMORY = 0.3  # s
+_SLIDING = 0.02  # m/s; faster than that, an unknown tilt looks like a soft table
+_FIT_CUTOFF = 30.0  # Hz
+
+
+@dataclass(frozen=True)
+class Sensing:
+    """How what the sensors say is filtered."""
+
+    felt: bool = True
+    """whether there is a force sensor"""
+    velocity_gain: float = 1.0
+    """share of a new sample in the joint velocity; 1 filters nothing"""
+    wrench_cutoff: float | None = None
+    """Hz, of a Butterworth filter of contact wrenches; None: unfiltered"""
+    joint_memory: float | None = None
+    """s, of the joint state filter; 0: none; None: 0.3 s for controllers that want calm positions"""
+    observer_gain: float = 30.0
+    """rad/s, of the momentum observer"""
+
+
+def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensing) -> Estimator[Any]:
+    """Measurement → what a controller needs: filtered, with environment and disturbance where it asks for them.
+
+    The environment is looked for, and a normal force explained, along the world's z axis.
+    """
+    gain, period = sensing.velocity_gain, believed.period
+    felt: Estimator[Any] = WrenchEstimator(robot, velocity_gain=gain) if sensing.felt else DirectEstimator(gain)
+    if sensing.wrench_cutoff is not None:
+        felt = FilteredEstimator(felt, wrench=Butterworth(sensing.wrench_cutoff, period))
+    memory = sensing.joint_memory
+    if memory is None:
+        memory = _JOINT_MEMORY if needs.calm else 0.0
+    if memory > 0.0:
+        felt = JointStateFilter(felt, memory)
+    if needs.environment:
+        frame = believed.presses or believed.frames[0]
+        fit = FitConfig(cutoff=_FIT_CUTOFF)
+        felt = EnvironmentEstimator(felt, robot, frame, period, config=fit, sliding=_SLIDING)
+    if needs.disturbance == "none":
+        return felt
+    return MomentumObserver(
+        felt,
+        robot,
+        gain=sensing.observer_gain,
+        contact=needs.disturbance,
+        compensation=believed.compensation,
+        late_readings=round(believed.sensing_delay / period),
+    )

@@ -1,0 +1,125 @@
+"""Controllers that are made of parts: haptic exploration in front of an impedance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import Field
+
+from pliant.controllers.attractor import Law
+from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationConfig
+from pliant.controllers.profiles import Shape
+from pliant.controllers.registry import advise_stack, build_stack
+from pliant.controllers.stack import Stack
+from pliant.controllers.suggest import suggest_stack
+from pliant.entries import Believed, ControllerConfig, ControllerEntry
+from pliant.interfaces import Needs, ReferenceSource
+from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
+from pliant.robot import Robot
+from pliant.signals import ImpedanceTuning
+
+
+class HapticConfig(ControllerConfig):
+    """Haptic exploration in front of a stack of fractal impedances."""
+
+    impedance: StackConfig = Field(description="what pulls the frames towards their targets")
+    exploration: ExplorationConfig | None = Field(
+        default=ExplorationConfig(), description="how targets move so that a force becomes the desired one; none: never"
+    )
+
+    def driven_frames(self) -> tuple[str, ...]:
+        return self.impedance.driven_frames()
+
+    def impedances(self) -> Mapping[str, ImpedanceTuning]:
+        return self.impedance.impedances()
+
+    def whole_tuning(self) -> ExplorationConfig | None:
+        return self.exploration
+
+
+def _build(robot: Robot, config: HapticConfig, period: float) -> Stack:
+    return build_stack(robot, config.impedance, period)
+
+
+def _advise(robot: Robot, config: HapticConfig, period: float) -> tuple[str, ...]:
+    return advise_stack(robot, config.impedance, period)
+
+
+def _needs(config: HapticConfig) -> Needs:
+    return Needs(wrench=config.exploration is not None)
+
+
+def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticConfig:
+    return config.model_copy(update={"impedance": suggest_stack(robot, config.impedance, believed)})
+
+
+def _filter(source: ReferenceSource[Any], robot: Robot, config: HapticConfig) -> ReferenceSource[Any]:
+    return source if config.exploration is None else HapticExploration(source, config.exploration, config.impedances())
+
+
+def _channels(config: HapticConfig, frames: Sequence[str]) -> Mapping[str, str]:
+    return {f"exploration/{frame}/{name}": unit for frame in frames for name, unit in CHANNELS.items()}
+
+
+_FOOT = FrameTaskConfig(
+    frame="foot",
+    translation=TranslationConfig(
+        stiffness=(6000.0, 6000.0, 12000.0), force_max=(150.0, 150.0, 300.0), range=(0.025, 0.025, 0.025)
+    ),
+    profile=Shape.TANH,
+)
+_DEFAULT = HapticConfig(impedance=StackConfig(tasks={"ee": _FOOT}))
+
+
+def _entry(
+    name: str, summary: str, fixed: Mapping[str, Any], *, guarantees: str, regulates: bool, planner: str = ""
+) -> ControllerEntry[HapticConfig]:
+    plain = ControllerEntry(name, summary, _DEFAULT, _build, fixed=fixed)
+    return ControllerEntry(
+        name,
+        summary,
+        plain.over(_DEFAULT),
+        _build,
+        _advise,
+        family="haptic",
+        guarantees=guarantees,
+        regulates_force=regulates,
+        needs=_needs,
+        suggest=_suggest,
+        fixed=fixed,
+        filter=_filter,
+        filter_channels=_channels,
+        planner=planner,
+    )
+
+
+RECIPES: Mapping[str, ControllerEntry[Any]] = {
+    entry.name: entry
+    for entry in (
+        _entry(
+            "haptic",
+            "haptic exploration in front of a fractal impedance: feels its way to the desired force",
+            {},
+            guarantees="impedance as `stack`; the target moves by x_b at most",
+            regulates=True,
+        ),
+        _entry(
+            "haptic-paper",
+            "the same with the algorithm and the law of Tiseo et al. 2021 as printed",
+            {"impedance": {"law": Law.HAPFIC}, "exploration": {"mode": "paper"}},
+            guarantees="–",
+            regulates=True,
+            planner="attractor",
+        ),
+        _entry(
+            "haptic-hold",
+            "the same impedance without exploration",
+            {"exploration": None},
+            guarantees="as `stack`",
+            regulates=False,
+        ),
+    )
+}
+"""name → entry"""
