@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,12 +10,12 @@ from pliant.configuration import merged
 from pliant.controllers.joint_limits import JointLimitsConfig, with_joint_limits
 from pliant.controllers.step_limit import DEFAULT_SHARE, StepLimit
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
-from pliant.errors import ConfigError
 from pliant.interfaces import Controller, Lookahead, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.telemetry.schema import Channel
 from pliant.wiring.estimators import Sensing, estimator_for
 from pliant.wiring.experiment import Experiment
+
 
 @dataclass(frozen=True)
 class Offer:
