@@ -75,7 +75,9 @@ class Needs:
         names = ("preview", "wrench", "environment", "torque", "posture")
         wanted = (self.preview is not None, self.wrench, self.environment, self.torque, self.posture)
         found = [name for name, wants in zip(names, wanted, strict=True) if wants]
-        return (*found, "disturbance") if self.disturbance != "none" else tuple(found)
+        if self.disturbance != "none":
+            found.append("disturbance")
+        return (*found, "calm positions") if self.calm else tuple(found)
 
 
 _NO_CHANNELS: Mapping[str, HasUnit] = MappingProxyType({})

@@ -10,6 +10,7 @@ from rich.table import Table
 from pliant.errors import ConfigError, options
 from pliant.experiments.registry import get_study, study_names
 from pliant.robots import CATALOGUE, is_available
+from pliant.wiring.registry import controllers
 
 
 def list_command(console: Console, what: str | None) -> None:
@@ -36,13 +37,14 @@ def _robots() -> Table:
 
 
 def _controllers() -> Table:
-    table = Table("controller", "study", title="controllers", title_justify="left")
-    found: dict[str, list[str]] = {}
-    for name in study_names():
-        for controller in get_study(name).controllers:
-            found.setdefault(controller, []).append(name)
-    for controller, studies in found.items():
-        table.add_row(controller, ", ".join(studies))
+    table = Table(
+        "controller", "family", "needs", "guarantees", "what it is", title="controllers", title_justify="left"
+    )
+    for entry in controllers().values():
+        needs = ", ".join(entry.needs(entry.default).words()) or "–"
+        force = "" if entry.regulates_force else "; regulates no force"
+        table.add_row(entry.name, entry.family, needs, entry.guarantees, entry.summary + force)
+    table.add_row("MODULE:CLASS", "own", "", "", "yours, from an importable module or my_file.py:MyController")
     return table
 
 

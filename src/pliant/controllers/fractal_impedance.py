@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pliant.controllers.attractor import Law, PhaseSettings
 from pliant.controllers.stack import Stack, StackState
 from pliant.controllers.task import FrameTask
-from pliant.interfaces import Controller, HasUnit
+from pliant.interfaces import Controller, HasUnit, Needs
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 
@@ -32,6 +32,11 @@ class FractalImpedance(Controller[StackState]):
         """Arguments and errors as in `Stack`, with one task."""
         self.task = task
         self.stack = Stack(robot, [task], period, law=law, phases=phases, gravity_compensation=gravity_compensation)
+
+    @property
+    def needs(self) -> Needs:
+        """What its stack of one wants to be told."""
+        return self.stack.needs
 
     @property
     def channels(self) -> Mapping[str, HasUnit]:

@@ -10,7 +10,7 @@ from pliant.controllers.attractor import Law
 from pliant.controllers.config import OperationalSpaceConfig, StackConfig
 from pliant.controllers.operational_space import OperationalSpace
 from pliant.controllers.presets import STIFF_STACK
-from pliant.controllers.stack import Stack
+from pliant.controllers.stack import Stack, needs_of_law
 from pliant.controllers.suggest import suggest_operational_space, suggest_stack
 from pliant.entries import ControllerEntry
 from pliant.interfaces import Needs
@@ -58,6 +58,7 @@ def _stack(name: str, law: Law, summary: str) -> ControllerEntry[StackConfig]:
         advise_stack,
         family="stack",
         guarantees=_PASSIVE if law is Law.CAPPED else "–",
+        needs=lambda config: needs_of_law(config.law),
         suggest=suggest_stack,
         fixed={"law": law},
     )

@@ -17,7 +17,7 @@ from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.profiles import linear_range
 from pliant.controllers.task import FrameTask
 from pliant.errors import ConfigError, ShapeError, SignalError, options
-from pliant.interfaces import Controller
+from pliant.interfaces import Controller, Needs
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import Array
@@ -43,6 +43,11 @@ class _Workspace:
         self.jacobian: Array = self.data.J
         poses = [self.data.oMf[frame] for frame in frames]
         self.poses: tuple[Any, ...] = tuple(part for pose in poses for part in (pose.translation, pose.rotation))
+
+
+def needs_of_law(law: Law) -> Needs:
+    """What a stack with a law wants to be told."""
+    return Needs(calm=law is Law.CAPPED)
 
 
 class Stack(Controller[StackState]):
@@ -121,6 +126,11 @@ class Stack(Controller[StackState]):
         )
         labels_and_axes = [(task.label, task.axes) for task in self.tasks]
         self._table = channel_table(robot.n, labels_and_axes, account=self.law is Law.CAPPED)
+
+    @property
+    def needs(self) -> Needs:
+        """With the passivity account: positions without white noise, which it would pay for until an axis goes limp."""
+        return needs_of_law(self.law)
 
     @property
     def channels(self) -> Mapping[str, Channel]:

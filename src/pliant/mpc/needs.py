@@ -7,8 +7,18 @@ from collections.abc import Mapping
 from pliant.entries import Believed
 from pliant.interfaces import Lookahead, Needs
 from pliant.mpc.config import Compensation, MpcConfig
-from pliant.mpc.costs import Phase
+from pliant.mpc.costs import Phase, Term
 from pliant.robot import Robot
+
+_POSTURE_SHARE = 0.05
+"""of the default posture cost, where a task says nothing of phases or posture"""
+_TRACK = 1000.0  # 1/m²
+_FELT = {
+    "free": Phase(translation=Term(weight=_TRACK, terminal_times_dt=False)),
+    "contact": Phase(
+        contact=True, translation=Term(weight=_TRACK, activation=(1.0, 1.0, 0.0), terminal_times_dt=False)
+    ),
+}
 
 
 def needs_of(config: MpcConfig) -> Needs:
@@ -30,16 +40,20 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
     """The task's first frame, period and phases; the robot's delays, where the controller predicts over them.
 
     A phase that the configuration does not know has the costs of its last phase with contact, or of its first one
-    without.
+    without. Where the task has no phases, the costs are those of contact or of free motion as it is felt, and the
+    position counts more against the posture.
     """
     named = bool(believed.phases)
+    costs = config.costs
+    posture = costs.posture.model_copy(update={"weight": _POSTURE_SHARE * costs.posture.weight})
     return config.model_copy(
         update={
+            "costs": costs if named else costs.model_copy(update={"posture": posture}),
             "frame": believed.frames[0],
             "period": max(config.period, believed.period),
             "gravity": believed.compensation == "none",
             "phase_by": "name" if named else "contact",
-            "phases": _phases(config, believed.phases) if named else config.phases,
+            "phases": _phases(config, believed.phases) if named else _FELT,
             "compensation": _timed(config.compensation, believed),
         }
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from pydantic import Field
@@ -11,7 +12,7 @@ from pliant.controllers.attractor import Law
 from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationConfig
 from pliant.controllers.profiles import Shape
 from pliant.controllers.registry import advise_stack, build_stack
-from pliant.controllers.stack import Stack
+from pliant.controllers.stack import Stack, needs_of_law
 from pliant.controllers.suggest import suggest_stack
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.interfaces import Needs, ReferenceSource
@@ -48,11 +49,17 @@ def _advise(robot: Robot, config: HapticConfig, period: float) -> tuple[str, ...
 
 
 def _needs(config: HapticConfig) -> Needs:
-    return Needs(wrench=config.exploration is not None)
+    return replace(needs_of_law(config.impedance.law), wrench=config.exploration is not None)
 
 
 def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticConfig:
-    return config.model_copy(update={"impedance": suggest_stack(robot, config.impedance, believed)})
+    """The stack that suits; where phases say when to touch, a frame that should and does not goes and looks."""
+    exploration = config.exploration
+    if exploration is not None and any(believed.phases.values()):
+        exploration = exploration.model_copy(update={"seek": True})
+    return config.model_copy(
+        update={"impedance": suggest_stack(robot, config.impedance, believed), "exploration": exploration}
+    )
 
 
 def _filter(source: ReferenceSource[Any], robot: Robot, config: HapticConfig) -> ReferenceSource[Any]:

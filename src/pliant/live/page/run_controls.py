@@ -18,6 +18,7 @@ from pliant.experiments.registry import get_study, study_names
 from pliant.live.link.messages import Begin, Flow, Message, Pulse, Ready, Record, StepOnce
 from pliant.live.link.steering_lock import Seat
 from pliant.live.page.form import tell
+from pliant.wiring.registry import find_controller
 
 _TEXT_PERIOD = 0.3  # s
 _NONE_YET: tuple[str, ...] = ("–",)
@@ -230,5 +231,5 @@ def free_name(folder: Path, study: str, config: CaseConfig) -> Path:
 
 
 def _same_kind(before: str, after: str) -> bool:
-    """Whether two controllers take the same parameters, as far as their names can tell."""
-    return before.split("-")[0] == after.split("-")[0]
+    """Whether two controllers take the same parameters."""
+    return find_controller(before).family == find_controller(after).family

@@ -25,6 +25,7 @@ from pliant.studies.haptic.safety import warnings_of
 from pliant.studies.haptic.scene import scene_of
 from pliant.studies.haptic.script import schedule
 from pliant.telemetry.schema import Channel
+from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -46,6 +47,7 @@ def build(config: HapticConfig) -> Experiment:
         believed=config.believed,
         plant=lambda felt: plant_of(config, robot),
         source=lambda lookahead: planned(config, robot, parameters),
+        sensing=Sensing(joint_memory=0.0),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,
         channels=(Channel(f"planner/{config.frame}/clamped", "m"),),

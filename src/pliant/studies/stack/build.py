@@ -60,7 +60,7 @@ def build(config: StackConfig) -> Experiment:
             observe=[tool, elbow],
         ),
         source=lambda lookahead: _changed(_foreseen(source, lookahead), config, rng_tuning),
-        sensing=Sensing(felt=False, velocity_gain=config.joints.velocity_filter),
+        sensing=Sensing(felt=False, velocity_gain=config.joints.velocity_filter, joint_memory=0.0),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,
     )

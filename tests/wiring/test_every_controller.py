@@ -1,0 +1,87 @@
+"""Any controller runs any task: every name on a case of each study, and what it is told there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pliant import loop
+from pliant.experiments.base import Experiment
+from pliant.experiments.config import merged
+from pliant.experiments.registry import get_study
+from pliant.experiments.runner import run_case
+from pliant.signals import Tick
+from pliant.wiring.registry import controllers
+
+TICKS = 100
+CASES = (("stack", "figure8-hardware"), ("haptic", "floor"), ("polishing", "tables-2-3-4-delayed"))
+
+
+def wired(study: str, case: str, controller: str, **changes: Any) -> Experiment:
+    found = get_study(study)
+    return found.build(merged(found.case(case), {"controller": controller, "duration": 0.5, **changes}))
+
+
+@pytest.mark.parametrize("name", list(controllers()))
+@pytest.mark.parametrize(("study", "case"), CASES)
+def test_every_controller_runs_a_case_of_every_study(study: str, case: str, name: str) -> None:
+    made = wired(study, case, name)
+    seen: list[Tick] = []
+    outcome = loop.run(
+        made.plant, made.estimator, made.source, made.controller, range(TICKS), [seen.append], made.robot
+    )
+    assert outcome.failure is None
+    torques = np.array([tick.command.torque for tick in seen])
+    assert np.isfinite(torques).all()
+    assert np.all(np.abs(torques) <= made.robot.torque_limit + 1e-9)
+    assert np.any(torques)  # it does something
+    entry = controllers()[name]
+    said = any("does not regulate a force" in text for text in made.warnings)
+    assert said == (study != "stack" and not entry.regulates_force)
+    units = {channel.name for channel in made.channels}
+    assert set(seen[-1].command.diagnostics) <= units  # every channel has its unit
+
+
+@pytest.mark.parametrize("name", list(controllers()))
+def test_a_controller_is_told_what_it_needs(name: str) -> None:
+    """On the study that is furthest from its own, from the first tick on."""
+    study, case = ("stack", "figure8-hardware") if "mpc" in name or "haptic" in name else CASES[2]
+    made = wired(study, case, name)
+    seen: list[Tick] = []
+    loop.run(made.plant, made.estimator, made.source, made.controller, range(3), [seen.append], made.robot)
+    entry, tick = controllers()[name], seen[-1]
+    needs, filtered = made.controller.needs, entry.needs(entry.default)
+    if needs.preview is not None:
+        assert tick.reference.preview is not None
+        first = tick.reference.time + needs.preview.lead
+        wanted = first + needs.preview.step * np.arange(needs.preview.nodes + 1)
+        assert tick.reference.preview.time == pytest.approx(wanted)
+    if needs.wrench or filtered.wrench:
+        assert tick.reference.tasks[0].frame in tick.estimate.wrenches
+    if needs.disturbance != "none":
+        assert tick.estimate.disturbance is not None
+    if needs.posture:
+        assert tick.reference.posture is not None
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("controller", "holds"), [("haptic", True), ("force-feedback-mpc", True), ("stack", False), ("haptic-hold", False)]
+)
+def test_who_regulates_a_force_holds_it_and_who_does_not_does_not(controller: str, holds: bool) -> None:
+    """40 N with the leg on a rigid floor: predictive control was made for another study."""
+    study = get_study("haptic")
+    result = run_case(study, merged(study.case("floor"), {"controller": controller, "duration": 1.4}))
+    assert result.failure is None
+    error = next(metric.value for metric in result.metrics if metric.name == "hold, rms")
+    assert (error < 1.0) == holds
+    assert (error < 5.0) == holds  # baselines are far off, not just beside
+
+
+def test_parameters_of_another_controller_are_refused_with_the_valid_ones() -> None:
+    study = get_study("haptic")
+    config = merged(study.case("floor"), {"controller": "offset-free-mpc", "control": {"horizn": 3}})
+    with pytest.raises(Exception, match=r"unknown key 'horizn'.*did you mean 'horizon'"):
+        study.build(config)

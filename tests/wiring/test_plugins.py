@@ -1,0 +1,128 @@
+"""Controllers of other people: from a file, from a module, from an installed package; and what is refused."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from pliant.errors import ConfigError
+from pliant.wiring.registry import find_controller
+
+MINE = textwrap.dedent(
+    '''
+    """A spring at one frame."""
+
+    import numpy as np
+    import pinocchio as pin
+    from pydantic import Field
+
+    from pliant.entries import ControllerConfig
+    from pliant.interfaces import ChannelUnit, Controller, Needs
+    from pliant.signals import Command
+
+
+    class Spring(Controller):
+        """A spring between a frame and its reference."""
+
+        class Config(ControllerConfig):
+            frame: str = "flange"
+            stiffness: float = Field(default=500.0, description="of the spring", json_schema_extra={"unit": "N/m"})
+
+        channels = {"spring/force": ChannelUnit("N")}
+
+        def __init__(self, robot, config, period):
+            self.robot, self.config = robot, config
+
+        @property
+        def needs(self):
+            return Needs(wrench=True)
+
+        def init(self, estimate):
+            return self.robot.model.createData()
+
+        def step(self, estimate, reference, data):
+            model, frame = self.robot.model, self.robot.frame_id(self.config.frame)
+            axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+            J = pin.computeFrameJacobian(model, data, estimate.q, frame, axes)[:3]
+            assert self.config.frame in estimate.wrenches
+            here = pin.updateFramePlacement(model, data, frame).translation
+            target = next(task for task in reference.tasks if task.frame == self.config.frame)
+            force = self.config.stiffness * (target.position - here)
+            torque = J.T @ force - estimate.v
+            sent = np.clip(torque, -self.robot.torque_limit, self.robot.torque_limit)
+            return Command(estimate.time, sent, torque - sent, {"spring/force": force}), data
+    '''
+)
+
+
+def pliant(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    code = "from pliant.cli import main\nif __name__ == '__main__': main()"
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "COLUMNS": "200"}
+    command = [sys.executable, "-c", code, *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False, timeout=120)
+
+
+def test_a_controller_from_a_file_runs_with_its_parameters_units_and_needs(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(MINE)
+    done = pliant(
+        "run", "haptic", "--controller", "mine.py:Spring", "--set", "duration=0.2", "--set", "physics_step=5e-4", "--set", "control.stiffness=800",
+        "--out", "out", cwd=tmp_path,
+    )  # fmt: skip
+    assert "does not regulate a force" in done.stderr
+    assert "never touched" in done.stderr  # it ran to its end, in the air
+    assert done.returncode == 1
+    (log,) = (tmp_path / "out").glob("*.mcap")
+    said = pliant("log", log, cwd=tmp_path)
+    assert "spring/force" in said.stdout
+    assert any("spring/force" in line and " N " in line for line in said.stdout.splitlines())
+
+
+def test_a_controller_from_a_module_is_swept_over_two_processes(tmp_path: Path) -> None:
+    (tmp_path / "my_control.py").write_text(MINE)
+    done = pliant(
+        "study", "haptic", "--case", "random", "--seeds", 2, "--jobs", 2, "--set", "controller=my_control:Spring",
+        "--set", "duration=0.2", "--set", "physics_step=5e-4", "--out", "out", cwd=tmp_path,
+    )  # fmt: skip
+    assert "Traceback" not in done.stderr
+    assert "never touched" in done.stderr
+    assert (tmp_path / "out" / "results.parquet").exists()
+
+
+@pytest.mark.parametrize(
+    ("where", "message"),
+    [
+        ("nowhere.py:Spring", r"file nowhere\.py does not exist"),
+        ("no_such_module:Spring", r"module 'no_such_module' cannot be imported"),
+        ("numpy:NotThere", r"numpy has no 'NotThere'"),
+        ("math:pi", r"must be a subclass of pliant\.interfaces\.Controller"),
+        (":Spring", r"write my_module:Name"),
+    ],
+)
+def test_what_is_no_controller_is_refused_in_a_sentence(where: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        find_controller(where)
+
+
+def test_a_file_that_does_not_import_is_refused_with_its_reason(tmp_path: Path) -> None:
+    (tmp_path / "broken.py").write_text("import math\nmath.no_such_thing\n")
+    with pytest.raises(ConfigError, match=r"broken\.py cannot be imported: AttributeError"):
+        find_controller(f"{tmp_path}/broken.py:Spring")
+
+
+def test_an_installed_package_offers_its_controllers_by_name(tmp_path: Path) -> None:
+    (tmp_path / "springs.py").write_text(MINE)
+    info = tmp_path / "springs-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: springs\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[pliant.controllers]\nsoft-spring = springs:Spring\n")
+    code = "from pliant.wiring.registry import controllers; print(controllers()['soft-spring'].summary)"
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False, timeout=60
+    )
+    assert done.stdout.strip() == "A spring between a frame and its reference.", done.stderr
