@@ -70,7 +70,7 @@ def pliant(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
 def test_a_controller_from_a_file_runs_with_its_parameters_units_and_needs(tmp_path: Path) -> None:
     (tmp_path / "mine.py").write_text(MINE)
     done = pliant(
-        "run", "haptic", "--controller", "mine.py:Spring", "--set", "duration=0.2", "--set", "physics_step=5e-4", "--set", "control.stiffness=800",
+        "run", "haptic", "--controller", "mine.py:Spring", "--set", "duration=0.1", "--set", "control.stiffness=800",
         "--out", "out", cwd=tmp_path,
     )  # fmt: skip
     assert "does not regulate a force" in done.stderr
@@ -86,7 +86,7 @@ def test_a_controller_from_a_module_is_swept_over_two_processes(tmp_path: Path) 
     (tmp_path / "my_control.py").write_text(MINE)
     done = pliant(
         "study", "haptic", "--case", "random", "--seeds", 2, "--jobs", 2, "--set", "controller=my_control:Spring",
-        "--set", "duration=0.2", "--set", "physics_step=5e-4", "--out", "out", cwd=tmp_path,
+        "--set", "duration=0.1", "--out", "out", cwd=tmp_path,
     )  # fmt: skip
     assert "Traceback" not in done.stderr
     assert "never touched" in done.stderr
