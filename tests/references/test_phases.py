@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from pliant.errors import ConfigError
-from pliant.references.phases import Lookahead, PhasedSource, PhaseState, TaskPhase
+from pliant.interfaces import Lookahead
+from pliant.references.phases import PhasedSource, PhaseState, TaskPhase
 from pliant.references.trajectories.shapes import circle
 from pliant.references.trajectories.trajectory import Hold
 from pliant.references.trajectories.waypoints import Waypoints, wrench_steps

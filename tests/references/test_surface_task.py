@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from pliant.errors import ConfigError, RunFailedError
+from pliant.interfaces import Lookahead
 from pliant.references.landing import SETTLE, Height
-from pliant.references.phases import Lookahead, TaskPhase
+from pliant.references.phases import TaskPhase
 from pliant.references.postures.inverse_kinematics import Target
 from pliant.references.postures.posture import UnreachableError
 from pliant.references.surface_task import SurfaceTask, SurfaceTaskSettings, surface_task
