@@ -3,8 +3,10 @@
     python benchmarks/joint_stops.py                 every robot of the catalogue that is installed
     python benchmarks/joint_stops.py iiwa14 lwr4     these
 
-At rest: the joint starts on its limit and is pushed for 0.5 s; the largest excess of the last 0.1 s. Thrown: it starts
-at the robot's home and is pushed for 1.5 s, the other joints hanging loose; the largest excess of all.
+At rest: the joint starts on its limit and is pushed for 0.5 s; the largest excess of the last 0.1 s. At speed: it
+starts on its limit with its speed limit (2 rad/s where the file gives none) and the same push; the largest excess.
+Thrown: it starts at the robot's home and is pushed for 1.5 s, the other joints hanging loose, and reaches the stop at
+speeds that no drive has; the largest excess of all, or what ended it.
 """
 
 from __future__ import annotations
@@ -15,17 +17,20 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
+from pliant.errors import RunFailedError
 from pliant.robot import Robot
 from pliant.robots import CATALOGUE, is_available
 from pliant.signals import Command
 from pliant.simulation import JointEffects, MujocoPlant
 
 
-def excess(plant: MujocoPlant, joint: int, torque: float, seconds: float, at: float | None) -> np.ndarray:
+def excess(
+    plant: MujocoPlant, joint: int, torque: float, seconds: float, at: float | None, speed: float = 0.0
+) -> np.ndarray:
     """(k,) degrees (mm where the joint slides)."""
     _, world = plant.init()
     if at is not None:
-        world.data.qpos[joint] = at
+        world.data.qpos[joint], world.data.qvel[joint] = at, speed
         mujoco.mj_step1(plant.model, world.data)
     torques = np.zeros(plant.robot.n)
     torques[joint] = torque
@@ -39,11 +44,12 @@ def excess(plant: MujocoPlant, joint: int, torque: float, seconds: float, at: fl
 
 
 def main(robots: list[str]) -> None:
-    print(f"{'robot':<10} {'worst at rest':>24} {'worst thrown':>24}   [degrees]")
+    print(f"{'robot':<10} {'worst at rest':>32} {'worst at speed':>32} {'worst thrown':>32}   [degrees]")
     for name in robots or [name for name, entry in CATALOGUE.items() if is_available(entry)]:
         robot = replace(Robot.load(name), visual=None)
         plant = MujocoPlant(robot, joints=JointEffects(compensation="gravity"))
         rest: dict[str, float] = {}
+        fast: dict[str, float] = {}
         thrown: dict[str, float] = {}
         for joint, label in enumerate(robot.joint_names):
             lower, upper = float(robot.position_lower[joint]), float(robot.position_upper[joint])
@@ -51,12 +57,18 @@ def main(robots: list[str]) -> None:
                 continue
             limit = float(robot.torque_limit[joint])
             limit = limit if np.isfinite(limit) else 100.0  # N·m, where the file gives none
+            speed = float(robot.velocity_limit[joint])
+            speed = speed if np.isfinite(speed) else 2.0  # rad/s
             for side, at in ((-1, lower), (1, upper)):
                 key = f"{label} {'+' if side > 0 else '-'}"
                 rest[key] = float(excess(plant, joint, side * limit, 0.5, at)[-100:].max())
-                thrown[key] = float(excess(plant, joint, side * limit, 1.5, None).max())
-        cells = [max(table.items(), key=lambda item: item[1]) for table in (rest, thrown) if table]
-        print(f"{name:<10} " + " ".join(f"{value:>10.2f} ({key:>10})" for key, value in cells), flush=True)
+                fast[key] = float(excess(plant, joint, side * limit, 0.2, at, side * speed).max())
+                try:
+                    thrown[key] = float(excess(plant, joint, side * limit, 1.5, None).max())
+                except RunFailedError:
+                    thrown[f"{key}, diverged"] = np.inf
+        cells = [max(table.items(), key=lambda item: item[1]) for table in (rest, fast, thrown) if table]
+        print(f"{name:<10} " + " ".join(f"{value:>8.2f} ({key:>21})" for key, value in cells), flush=True)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -73,7 +73,7 @@ def merged(config: C, changes: Mapping[str, Any]) -> C:
     """
     if not changes:
         return config
-    return validated(type(config), _overlay(config.model_dump(), changes))
+    return validated(type(config), _overlay(type(config), config.model_dump(), changes))
 
 
 def validated(kind: type[C], values: Mapping[str, Any]) -> C:
@@ -84,12 +84,27 @@ def validated(kind: type[C], values: Mapping[str, Any]) -> C:
         raise ConfigError(_sentence(kind, error)) from None
 
 
-def _overlay(base: Any, changes: Mapping[str, Any]) -> dict[str, Any]:
+def _overlay(kind: type[BaseModel] | None, base: Any, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """The values with some replaced. Tables are merged key by key; a table of plain numbers is one value."""
     result = dict(base) if isinstance(base, Mapping) else {}
     for key, value in changes.items():
-        nested = isinstance(value, Mapping) and isinstance(result.get(key), Mapping)
-        result[key] = _overlay(result[key], value) if nested else value
+        field = None if kind is None else kind.model_fields.get(key)
+        annotation = None if field is None else field.annotation
+        nested = isinstance(value, Mapping) and isinstance(result.get(key), Mapping) and not _is_numbers(annotation)
+        models = [] if _is_table(annotation) else _models_in(annotation)
+        result[key] = _overlay(models[0] if models else None, result[key], value) if nested else value
     return result
+
+
+def _is_table(annotation: Any) -> bool:
+    return get_origin(annotation) is dict or any(_is_table(option) for option in get_args(annotation))
+
+
+def _is_numbers(annotation: Any) -> bool:
+    """Whether a field is a table of numbers, `dict[str, float]`, or nothing."""
+    if get_origin(annotation) is dict:
+        return get_args(annotation)[1] in (float, int)
+    return any(_is_numbers(option) for option in get_args(annotation))
 
 
 def _toml_value(text: str) -> Any:

@@ -32,6 +32,7 @@ HAND = mjcf(arm().replace('<site name="tip"', FINGERS + '<site name="tip"'), aft
 def test_gravity_switched_off_and_the_inertia_of_motors_count(before: str, after: str, tmp_path: Path) -> None:
     text = mjcf(arm(), before=before, after=after)
     robot, truth = load(tmp_path, text), mujoco.MjModel.from_xml_string(text)
+    assert np.isinf(robot.velocity_limit).all()  # an MJCF has none
     plain = mujoco.MjModel.from_xml_string(MJCF["plain"])
     rng = np.random.default_rng(0)
     q, v = rng.uniform(-0.7, 0.7, 2), rng.normal(size=2)

@@ -132,7 +132,7 @@ def test_every_run_of_the_study_can_be_wired() -> None:
     ("changes", "error", "words"),
     [
         ({"control": {"tasks": {"elbow": None}}}, ConfigError, "two frames"),
-        ({"controller": "operational-space", "retuning": {}}, ConfigError, "only a stack can be retuned"),
+        ({"controller": "operational-space", "retuning": {}}, ConfigError, "can be retuned"),
         ({"path": {"kind": "line", "amplitude": 1.5}}, UnreachableError, "cannot reach"),
         ({"path": {"peak_speed": 9.0, "kind": "line"}}, UnreachableError, "in time"),
         ({"preset": "medium"}, ConfigError, "preset"),

@@ -28,6 +28,11 @@ class CaseConfig(Config):
     case: str = Field(description="name of the case")
     controller: str = Field(description="name of the controller")
     robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
+    locked: dict[str, float] | None = Field(
+        default=None,
+        description="joint → angle at which it is fixed, replaced as a whole; none: what the catalogue locks; {}: none",
+        json_schema_extra={"unit": "rad"},
+    )
     seed: int = Field(default=0, ge=0, description="of every random draw")
     duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     joint_limits: JointLimitsConfig | None = Field(

@@ -63,7 +63,7 @@ _OWN = (
     CatalogueEntry(
         "panda",
         "Franka Emika Panda without a hand, 7 joints; kinematics and limits of the maker's documentation, inertial"
-        " parameters as published with franka_description",
+        " parameters as published with franka_ros",
         "panda.urdf",
         home=(0.0, -math.pi / 4, 0.0, -3 * math.pi / 4, 0.0, _QUARTER, math.pi / 4),
     ),

@@ -39,6 +39,11 @@ def free_name(wanted: str, taken: Collection[str]) -> str:
     return name
 
 
+def lock_hint(joint: str, value: float = 0.0) -> str:
+    """How to lock a joint, from Python and on the command line."""
+    return f"locked={{{joint!r}: {value:g}}}, on the command line --set locked.{joint}={value:g}"
+
+
 def set_limits(model: pin.Model, at: int, lower: float, upper: float) -> None:
     """Sets the position limits of the joint at index `at` of q; ±∞ where the range is no limit."""
     wide = not np.isfinite([lower, upper]).all() or upper - lower > UNLIMITED

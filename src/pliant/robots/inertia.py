@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from pliant.errors import RobotError
+from pliant.robots.description import lock_hint
 from pliant.spatial import Array
 
 TINY = 1e-6
@@ -39,7 +40,7 @@ def check_inertia(model: pin.Model, source: object) -> tuple[list[str], tuple[st
         if resisted[model.joints[index].idx_v] < _NOTHING:
             raise RobotError(
                 f"{source}: link {name!r}, moved by joint {model.names[index]!r}, has no mass and carries none; give it"
-                f" an <inertial>, or lock the joint: locked={{{model.names[index]!r}: 0.0}}"
+                f" an <inertial>, or lock the joint: {lock_hint(model.names[index])}"
             )
         if masses[index - 1] <= 0.0 and not _is_between(model, index):
             notes.append(f"link {name!r} has no mass of its own; what it carries gives its inertia")

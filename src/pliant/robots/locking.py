@@ -32,7 +32,9 @@ def lock(
     names = list(model.names)[1:]
     for joint, value in joints.items():
         if joint not in names:
-            raise ConfigError(f"robot {name!r} has no joint {joint!r} to lock; {options(names, joint)}")
+            raise ConfigError(
+                f"robot {name!r} has no joint {joint!r} to lock; {options(names, joint)}; locked={{}} locks none"
+            )
         if not np.isfinite(value):
             raise ConfigError(f"joint {joint!r} must be locked at a finite angle, got {value}")
     if len(joints) >= len(names):

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from pliant.errors import RobotError
+from pliant.robots.description import lock_hint
 from pliant.robots.mjcf_tree import Tree, joint_name
 from pliant.robots.urdf_numbers import LONGEST, WIDEST
 
@@ -24,7 +25,7 @@ def check_joints(compiled: mujoco.MjModel, path: Path, locked: Collection[str]) 
         if kind is not None and name not in locked:
             raise RobotError(
                 f"{path}: joint {name!r} is {kind}; joints must be hinges or slides, or be locked where the file puts"
-                f" them: locked={{{name!r}: 0}}"
+                f" them: {lock_hint(name)}"
             )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import mujoco
 
 from pliant.errors import RobotError
+from pliant.robots.description import lock_hint
 from pliant.robots.mjcf_tree import joint_name
 
 
@@ -31,7 +32,7 @@ def _check_joint_coupling(compiled: mujoco.MjModel, path: Path, locked: Collecti
     told = f"follows joint {master!r}" if master is not None else "is held at a fixed position"
     raise RobotError(
         f"{path}: joint {follower!r} {told} (an equality of the file), and coupled joints are not simulated; lock it:"
-        f" locked={{{follower!r}: {float(compiled.eq_data[index][0]):g}}}"
+        f" {lock_hint(follower, float(compiled.eq_data[index][0]))}"
     )
 
 

@@ -65,6 +65,7 @@ def build_tree(compiled: mujoco.MjModel, locked: Collection[str]) -> Tree:
         _add_body(tree, compiled, body)
     for site in range(compiled.nsite):
         _add_site(tree, compiled, site)
+    tree.model.upperVelocityLimit = np.full(tree.model.nv, np.inf)  # the format has no speed limits
     unnamed = [joint_name(compiled, i) for i in tree.joints if not compiled.joint(i).name]
     if unnamed:
         tree.notes.append(f"joints without a name in the file are called {', '.join(unnamed)}")

@@ -8,6 +8,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from pliant.errors import RobotError, options
+from pliant.robots.description import lock_hint
 
 _MOVING = ("revolute", "continuous", "prismatic")
 _KNOWN = (*_MOVING, "fixed", "floating", "planar")
@@ -60,13 +61,13 @@ def _check_joint(joint: Element, path: Path, links: list[str], locked: Collectio
     if kind in ("floating", "planar"):
         raise RobotError(
             f"{path}: joint {name!r} is {kind}; joints must be revolute, continuous or prismatic, or be locked where"
-            f" the file puts them: locked={{{name!r}: 0}}"
+            f" the file puts them: {lock_hint(name)}"
         )
     mimic = joint.find("mimic")
     if mimic is not None and kind in _MOVING:
         raise RobotError(
-            f"{path}: joint {name!r} follows joint {mimic.get('joint')!r} (mimic), and coupled joints are not"
-            f" simulated; lock it: locked={{{name!r}: 0.0}}"
+            f"{path}: joint {name!r} follows joint {mimic.get('joint', '')!r} (mimic), and coupled joints are not"
+            f" simulated; lock it: {lock_hint(name)}"
         )
 
 

@@ -36,7 +36,7 @@ def build(config: HapticConfig) -> Experiment:
     Raises:
         PliantError: a robot, frame or parameter that does not fit, or a force that nothing could feel.
     """
-    warnings = warnings_of(config, Robot.load(config.robot))
+    warnings = warnings_of(config, Robot.load(config.robot, locked=config.locked))
     config = drawn(config)
     robot = robot_of(config)
     robot.frame_id(config.frame)
@@ -58,7 +58,7 @@ def build(config: HapticConfig) -> Experiment:
 
 def robot_of(config: HapticConfig) -> Robot:
     """The leg, as heavy as the configuration says."""
-    robot = Robot.load(config.robot)
+    robot = Robot.load(config.robot, locked=config.locked)
     if config.hardware.mass_scale is None:
         return robot
     factors = robot.vector(config.hardware.mass_scale, "hardware.mass_scale")

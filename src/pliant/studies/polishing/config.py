@@ -124,8 +124,10 @@ class PolishingConfig(CaseConfig):
     robot: str = Field(
         default="iiwa14", description="catalogue name, or path of a URDF or MJCF file with a frame 'flange'"
     )
-    locked: dict[str, float] = Field(
-        default={"A7": 0.0}, description="joint → angle at which it is fixed", json_schema_extra={"unit": "rad"}
+    locked: dict[str, float] | None = Field(
+        default={"A7": 0.0},
+        description="joint → angle at which it is fixed, replaced as a whole; {} locks none",
+        json_schema_extra={"unit": "rad"},
     )
     duration: float = Field(default=10.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     period: float = Field(default=1e-3, gt=0.0, description="control period", json_schema_extra={"unit": "s"})

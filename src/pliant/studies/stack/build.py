@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,25 +13,19 @@ from pliant.errors import ConfigError
 from pliant.experiments.model_error import with_mass_error
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Foreseen
-from pliant.references.postures.posture import PostureOptions
-from pliant.references.postures.posture_source import PostureSource, posture_source
+from pliant.references.postures.posture_source import PostureSource
 from pliant.references.retuned import Retuned, TuningChange
-from pliant.references.source import FrameMotion
-from pliant.references.trajectories.shapes import lemniscate, sine_line
-from pliant.references.trajectories.trajectory import Hold
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Push, Scene, Surface, random_pushes, wall
 from pliant.simulation.seeding import generator
-from pliant.spatial import frame_with_z_along
 from pliant.studies.stack.config import Path, StackConfig
+from pliant.studies.stack.placement import Placement, placed
 from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
 TOUCH_RADIUS = 0.01  # m of the sphere with which the tool touches the wall
-_CENTRE = (0.0, -0.6, 0.5)  # m, [Stack] sec. III-A
-_NOMINAL = (np.pi / 2, 0.75, 0.0, -1.35, 0.0, -0.53, 0.0)  # rad, elbow up, tool along −y
 
 
 def build(config: StackConfig) -> Experiment:
@@ -41,16 +36,16 @@ def build(config: StackConfig) -> Experiment:
     """
     rng_pushes, rng_tuning = (np.random.default_rng(seed) for seed in np.random.SeedSequence(config.seed).spawn(2))
     tool, elbow = config.frames()
-    robot = Robot.load(config.robot).with_contact(tool, TOUCH_RADIUS)
-    robot.frame_id(elbow)
-    source = _references(config, robot)
+    place, source = _placed(config)
+    robot = config.robot_model().with_contact(tool, TOUCH_RADIUS)
+    robot = replace(robot, notes=(*robot.notes, *((place.told,) if place.told else ())))
     offer = Offer(
         model=with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses")),
         robot=robot,
         believed=replace(config.believed, frames=(tool, elbow)),
         plant=lambda felt: MujocoPlant(
             robot,
-            _scene(config),
+            _scene(config, place),
             period=config.period,
             physics_step=config.physics_step,
             start=source.start,
@@ -75,33 +70,33 @@ def _changed(source: ReferenceSource[Any], config: StackConfig, rng: np.random.G
     return source if config.retuning is None else Retuned(source, _schedule(config, rng))
 
 
-def motion(path: Path, frame: str) -> FrameMotion:
-    """What the tool does; its z axis points along −y throughout."""
-    if path.kind == "figure8":
-        position = lemniscate(period=path.period, centre=_CENTRE)
-    elif path.kind == "line":
-        position = sine_line(path.amplitude, path.peak_speed, _CENTRE)
-    elif path.kind == "stretch":
-        # At shoulder height the arm is straight at 0.868 m: the reference goes 10 mm beyond.
-        position = sine_line(0.128, 0.2, (0.0, -0.75, 0.31), (0.0, -1.0, 0.0))
-    else:
-        position = Hold(_CENTRE)
-    return FrameMotion(frame, position, frame_with_z_along((0.0, -1.0, 0.0))).eased(path.ramp)
+def place_of(config: StackConfig) -> Placement:
+    """Where the path of a run lies. Raises UnreachableError where the robot can follow it nowhere."""
+    return _placed(config)[0]
 
 
-def _references(config: StackConfig, robot: Robot) -> PostureSource:
-    tool, elbow = config.frames()
-    beyond_reach = config.path.kind == "stretch"
-    options = PostureOptions(method=config.path.method, tolerance=np.inf if beyond_reach else 1e-3)
-    nominal = _NOMINAL if robot.n == len(_NOMINAL) else None
-    return posture_source(robot, motion(config.path, tool), [elbow], config.duration, nominal, options)
+def _placed(config: StackConfig) -> tuple[Placement, PostureSource]:
+    """Found once for all runs of the same robot and path: the inverse kinematics takes seconds."""
+    locked = None if config.locked is None else tuple(sorted(config.locked.items()))
+    return _found(config.robot, locked, config.path.model_dump_json(), config.frames(), config.duration)
 
 
-def _scene(config: StackConfig) -> Scene:
+@lru_cache(maxsize=8)
+def _found(
+    robot: str, locked: tuple[tuple[str, float], ...] | None, path: str, frames: tuple[str, str], duration: float
+) -> tuple[Placement, PostureSource]:
+    arm = Robot.load(robot, locked=None if locked is None else dict(locked))
+    return placed(arm, Path.model_validate_json(path), frames, duration)
+
+
+def _scene(config: StackConfig, place: Placement) -> Scene:
     if config.wall is None:
         return Scene()
     surface = Surface(config.wall.stiffness, config.wall.damping, config.wall.friction)
-    return Scene((wall((config.wall.x + TOUCH_RADIUS, _CENTRE[1], _CENTRE[2]), surface=surface),))
+    across = place.axes[:, 0]
+    x, y, z = (place.centre + (place.scale * config.wall.x + TOUCH_RADIUS) * across).tolist()
+    nx, ny, nz = (-across).tolist()
+    return Scene((wall((x, y, z), (nx, ny, nz), surface=surface),))
 
 
 def _pushes(config: StackConfig, rng: np.random.Generator) -> tuple[Push, ...]:

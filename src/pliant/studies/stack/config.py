@@ -151,6 +151,10 @@ class StackConfig(CaseConfig):
         """The chosen controller."""
         return find_controller(self.controller)
 
+    def robot_model(self) -> Robot:
+        """The arm."""
+        return Robot.load(self.robot, locked=self.locked)
+
     @property
     def believed(self) -> Believed:
         """What the controller may know."""
@@ -161,7 +165,7 @@ class StackConfig(CaseConfig):
         entry = self.entry
         preset = PRESETS.get(entry.family, {}).get(self.preset)
         if preset is None:
-            return parameters_for(entry, Robot.load(self.robot), self.believed, self.control)
+            return parameters_for(entry, self.robot_model(), self.believed, self.control)
         return merged(entry.over(preset), self.control)
 
     def frames(self) -> tuple[str, str]:

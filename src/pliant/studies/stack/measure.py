@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pliant import loop
 from pliant.robot import Robot
 from pliant.spatial import Array
-from pliant.studies.stack.build import build
+from pliant.studies.stack.build import build, place_of
 from pliant.studies.stack.config import StackConfig
 from pliant.telemetry import metrics
 from pliant.telemetry.log import Log
@@ -67,9 +67,10 @@ def window(config: StackConfig, log: Log) -> npt.NDArray[np.bool_]:
 
 
 def tracking_rmse(config: StackConfig, log: Log) -> Array:
-    """(3,) mm, true tool position against its reference."""
-    tool, counts = config.frames()[0], window(config, log)
-    return 1e3 * metrics.rmse(log[f"truth/{tool}/position"][counts], log[f"reference/{tool}/position"][counts])
+    """(3,) mm, true tool position against its reference, in the axes of the path: the paper's x, y, z."""
+    tool, counts, axes = config.frames()[0], window(config, log), place_of(config).axes
+    actual, wanted = (log[f"{kind}/{tool}/position"][counts] @ axes for kind in ("truth", "reference"))
+    return 1e3 * metrics.rmse(actual, wanted)
 
 
 def _against_no_wall(config: StackConfig, log: Log) -> list[Metric]:

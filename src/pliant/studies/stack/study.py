@@ -8,7 +8,6 @@ from pathlib import Path
 from pliant.experiments.base import Experiment, Result, Study
 from pliant.experiments.config import merged
 from pliant.experiments.tuning import Tuning
-from pliant.robot import Robot
 from pliant.studies.stack import draw
 from pliant.studies.stack.build import build
 from pliant.studies.stack.config import CASES, StackConfig
@@ -50,7 +49,7 @@ class StackStudy(Study[StackConfig]):
         return super().shows(config) and config.controller == JUDGED
 
     def metrics(self, config: StackConfig, log: Log) -> tuple[Metric, ...]:
-        return measure(config, Robot.load(config.robot), log)
+        return measure(config, config.robot_model(), log)
 
     def figures(self, config: StackConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, folder)
