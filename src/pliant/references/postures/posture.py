@@ -21,7 +21,11 @@ METHODS: dict[str, type[PoseSolver]] = {"mink": MinkSolver, "aico": AicoSolver}
 
 
 class UnreachableError(PliantError):
-    """A pose that the robot cannot take, or not in time."""
+    """A pose that the robot cannot take, or not in time. Args: time: s of the motion at which that is."""
+
+    def __init__(self, message: str, time: float = 0.0) -> None:
+        super().__init__(message)
+        self.time = time
 
 
 @dataclass(frozen=True)
@@ -167,7 +171,8 @@ def _follow(
         short = solver.shortfall(q, target)
         if short[0] > chosen.tolerance or short[1] > 10.0 * chosen.tolerance:
             hurried = float(np.max(np.abs(q - postures[index - 1]) / speed)) > 0.999 * period
-            raise UnreachableError(_complaint(solver, q, target, float(times[index]), hurried))
+            when = float(times[index])
+            raise UnreachableError(_complaint(solver, q, target, when, hurried), when)
         worst = (max(worst[0], short[0]), max(worst[1], short[1]))
         postures[index] = q
     return PosturePath(times, postures, worst[0], worst[1])

@@ -1,0 +1,148 @@
+"""Checks a task on the surface as it is believed and on others as it may truly be, and says what would help."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from pliant.errors import ConfigError
+from pliant.references.postures.posture import PostureOptions, PosturePath, UnreachableError, solve_posture
+from pliant.references.reach.course import Course
+from pliant.references.reach.margins import Bounds, Margin, margins
+from pliant.references.reach.remedy import remedy
+from pliant.robot import Robot
+from pliant.spatial import Array
+from pliant.surfaces import SurfaceGeometry
+
+
+@dataclass(frozen=True)
+class SurfaceCheck:
+    """The task on one surface."""
+
+    label: str
+    """"believed", or the number of a drawn one"""
+    margins: tuple[Margin, ...] = ()
+    """empty where no joint path was found"""
+    failure: str = ""
+    """the first point that fails and by how much, in one sentence; empty: none does"""
+    time: float = math.nan
+    """s from the start of the course at which that is"""
+
+    @property
+    def reachable(self) -> bool:
+        return not self.failure
+
+
+@dataclass(frozen=True)
+class ReachCheck:
+    """What was found."""
+
+    course: Course
+    surfaces: tuple[SurfaceCheck, ...]
+    """the believed one first"""
+    posture: PosturePath | None
+    """on the believed surface"""
+    help: str = ""
+    """what would help, in one sentence"""
+
+    @property
+    def reachable(self) -> bool:
+        """Whether the task can be done on every surface that was looked at."""
+        return all(found.reachable for found in self.surfaces)
+
+    def rows(self) -> list[tuple[str, str, str, str, str, str]]:
+        """For a table: surface, quantity, worst value, bound, where, ✓ or ✗."""
+        table: list[tuple[str, str, str, str, str, str]] = []
+        for found in self.surfaces:
+            if not found.margins:
+                table.append((found.label, "reach", "–", "–", f"t = {found.time:.2f} s", "✗"))
+            for margin in found.margins:
+                at = margin.worst
+                where = f"t = {self.course.times[at]:.2f} s {margin.joint(at)}".rstrip()
+                sign = "≥" if margin.least else "≤"
+                met = "✓" if margin.first_failure is None else "✗"
+                bound = f"{sign} {margin.bound:.3g} {margin.unit}"
+                table.append((found.label, margin.name, f"{margin.values[at]:.3g}", bound, where, met))
+        return table
+
+
+def check_reach(
+    robot: Robot,
+    frame: str,
+    course: Course,
+    surfaces: Sequence[SurfaceGeometry] = (),
+    lift: float = 0.0,
+    bounds: Bounds | None = None,
+    posture: PostureOptions | None = None,
+    nominal: Array | None = None,
+) -> ReachCheck:
+    """Whether a robot can do a task.
+
+    Args:
+        robot: as it is believed.
+        frame: the controlled one.
+        course: of the task, on the believed surface.
+        surfaces: others, on which it must be possible, too.
+        lift: m from a surface to the frame: the radius of a tool ball.
+        bounds: what must be left; None: the defaults.
+        posture: how its joint path is solved, and whether the tool may spin; its period is chosen here.
+        nominal: (n,) rad, as of the task.
+
+    Returns:
+        "Reachable" is a statement on the sampled course with the joint path found, from rest over its first place; how
+        a controller gets through it is another matter.
+    """
+    limits = bounds or Bounds()
+    options = posture or PostureOptions()
+    path, first = _check(robot, frame, course, "believed", limits, nominal, options)
+    found = [first]
+    begin = nominal if path is None else path.postures[0]
+    for number, surface in enumerate(surfaces if path is not None else (), start=1):
+        try:
+            other = course.on(surface, lift)
+        except ConfigError as error:
+            found.append(SurfaceCheck(f"drawn {number}", failure=str(error), time=0.0))
+            continue
+        near = replace(options, restarts=0)
+        found.append(_check(robot, frame, other, f"drawn {number}", limits, begin, near)[1])
+    failed = next((check for check in found if not check.reachable), None)
+    words = "" if failed is None else remedy(robot, frame, course, failed.margins, limits, options.spins, nominal)
+    return ReachCheck(course, tuple(found), path, words)
+
+
+def _check(
+    robot: Robot,
+    frame: str,
+    course: Course,
+    label: str,
+    bounds: Bounds,
+    nominal: Array | None,
+    options: PostureOptions,
+) -> tuple[PosturePath | None, SurfaceCheck]:
+    try:
+        posture = solve_course(robot, frame, course, nominal, options)
+    except UnreachableError as error:
+        return None, SurfaceCheck(label, failure=str(error), time=error.time)
+    left = margins(robot, frame, course, posture, bounds, options.spins)
+    failing = [(margin.first_failure, margin) for margin in left if margin.first_failure is not None]
+    if not failing:
+        return posture, SurfaceCheck(label, left)
+    sample, margin = min(failing, key=lambda each: each[0])
+    x, y, z = course.places[sample]
+    joint = f" of joint {margin.joint(sample)}" if margin.joint(sample) else ""
+    words = (
+        f"at t = {course.times[sample]:.2f} s, ({x:.3f}, {y:.3f}, {z:.3f}) m, {margin.name}{joint} is"
+        f" {margin.values[sample]:.3g} {margin.unit}, must be {'at least' if margin.least else 'at most'}"
+        f" {margin.bound:.3g}"
+    )
+    return posture, SurfaceCheck(label, left, words, float(course.times[sample]))
+
+
+def solve_course(
+    robot: Robot, frame: str, course: Course, nominal: Array | None, options: PostureOptions
+) -> PosturePath:
+    """Joint path of a course. Raises UnreachableError."""
+    seconds = float(course.times[-1])
+    period = max(seconds / (len(course.times) - 1), 0.02)
+    return solve_posture(robot, course.motion(frame), seconds, nominal, replace(options, period=period))

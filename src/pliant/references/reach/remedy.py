@@ -1,0 +1,81 @@
+"""What would make a task possible that is not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pliant.references.postures.posture import PostureOptions, UnreachableError, solve_posture
+from pliant.references.reach.course import Course
+from pliant.references.reach.margins import Bounds, Margin, margins
+from pliant.robot import Robot
+from pliant.spatial import Array
+
+_SIZES = (0.05, 0.1, 0.2, 0.3)  # m
+
+
+def remedy(
+    robot: Robot,
+    frame: str,
+    course: Course,
+    left: Sequence[Margin],
+    bounds: Bounds,
+    spins: bool,
+    nominal: Array | None,
+) -> str:
+    """One sentence. What it proposes was tried on the believed surface; only a lower speed was not, which follows from
+    the speed that is needed.
+
+    Args: as `check_reach`; left: margins where a joint path was found, else empty.
+    """
+    broken = {margin.name: margin for margin in left if margin.first_failure is not None}
+    if broken and set(broken) <= {"joint speed"}:
+        share = float(broken["joint speed"].values.max())
+        return f"run the path {share / bounds.speed:.2g} times slower, its acceleration too"
+    if broken and set(broken) <= {"torque"}:
+        lighter = _lighter(robot, frame, course, bounds, spins, nominal)
+        if lighter is not None:
+            return f"press with {lighter:.0%} of the force"
+    if not spins and _possible(robot, frame, course, bounds, True, nominal):
+        return "let the tool turn about its own axis"
+    for size in _SIZES:
+        for name, way in _ways(course):
+            if _possible(robot, frame, course.moved(size * way), bounds, spins, nominal):
+                return f"move surface and path by {1e2 * size:.0f} cm {name}"
+    return "none of the moves by up to 30 cm that were tried makes it possible: another place, robot or tool is needed"
+
+
+def _ways(course: Course) -> list[tuple[str, Array]]:
+    middle = course.places[:, :2].mean(axis=0)
+    out = np.array([*middle, 0.0]) / max(float(np.linalg.norm(middle)), 1e-9)
+    side, up = np.array([-out[1], out[0], 0.0]), np.array([0.0, 0.0, 1.0])
+    return [
+        ("towards the base", -out),
+        ("away from the base", out),
+        ("up", up),
+        ("down", -up),
+        ("to the left, seen from the base", side),
+        ("to the right, seen from the base", -side),
+    ]
+
+
+def _possible(robot: Robot, frame: str, course: Course, bounds: Bounds, spins: bool, nominal: Array | None) -> bool:
+    try:
+        period = max(float(course.times[-1]) / 60.0, 0.02)
+        options = PostureOptions("aico", period, spins=spins, restarts=2)  # the faster method
+        posture = solve_posture(robot, course.motion(frame), float(course.times[-1]), nominal, options)
+    except UnreachableError:
+        return False
+    found = margins(robot, frame, course, posture, bounds, spins)
+    return all(margin.first_failure is None for margin in found)
+
+
+def _lighter(
+    robot: Robot, frame: str, course: Course, bounds: Bounds, spins: bool, nominal: Array | None
+) -> float | None:
+    for share in (0.75, 0.5, 0.25, 0.1):
+        if _possible(robot, frame, replace(course, force=share * course.force), bounds, spins, nominal):
+            return share
+    return None
