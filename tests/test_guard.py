@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from pliant import loop
 from pliant.controllers.step_limit import StepLimit
-from pliant.errors import RunFailedError, ShapeError
+from pliant.errors import ConfigError, RunFailedError, ShapeError
 from pliant.guard import Fault, Guard, Watched
 from pliant.interfaces import Controller, Plant
 from pliant.mpc import ForceFeedbackMpc
 from pliant.mpc.plan import Plan, torque_from
 from pliant.robot import Robot
-from pliant.signals import Command, Estimate, Measurement, Reference, TaskReference
+from pliant.signals import Command, Environment, Estimate, Measurement, Preview, Reference, TaskReference
 
 PERIOD = 1e-3  # s
 
@@ -70,9 +72,18 @@ def test_a_reading_after_a_fault_is_on_time_if_no_more_was_lost() -> None:
     assert guard.measurement(bad, watched) is Fault.NOT_FINITE
     guard.settled(command(), Fault.NOT_FINITE, bad, watched)
     assert guard.measurement(reading(10.0), watched) is Fault.LATE
+    assert guard.measurement(reading(10.0 + 2.0 * PERIOD), watched) is Fault.LATE  # a second one
+    assert guard.measurement(reading(10.0 + 3.0 * PERIOD), watched) is Fault.NONE
     guard, watched = started()
-    guard.settled(command(), Fault.NOT_FINITE, bad, watched)
+    assert guard.measurement(bad, watched) is Fault.NOT_FINITE
     assert guard.measurement(reading(2.0 * PERIOD), watched) is Fault.NONE
+
+
+def test_a_late_reading_after_a_fault_that_was_not_the_sensors_is_late() -> None:
+    guard, watched = started()
+    assert guard.measurement(reading(PERIOD), watched) is Fault.NONE
+    guard.settled(command(), Fault.REFERENCE, reading(PERIOD), watched)
+    assert guard.measurement(reading(3.0 * PERIOD), watched) is Fault.LATE
 
 
 def test_a_noisy_sensor_that_stands_still_is_frozen_at_its_third_equal_reading() -> None:
@@ -94,28 +105,146 @@ def test_a_noisy_sensor_that_stands_still_is_frozen_at_its_third_equal_reading()
     ],
 )
 def test_a_reference_of_another_size_or_not_finite_is_found(changed: dict[str, np.ndarray]) -> None:
-    guard, _ = started()
+    guard, watched = started()
     task = TaskReference("foot", np.zeros(3), np.eye(3))
-    assert guard.reference(Reference(0.0, (task,))) is Fault.NONE
-    assert guard.reference(Reference(0.0, (replace(task, **changed),))) is Fault.REFERENCE
+    assert guard.reference(Reference(0.0, (task,)), watched) is Fault.NONE
+    assert guard.reference(Reference(0.0, (replace(task, **changed),)), watched) is Fault.REFERENCE
 
 
 def test_a_wrench_of_another_size_is_found() -> None:
     guard, watched = started()
     bad = replace(reading(PERIOD), wrenches={"foot": np.zeros(5)})
-    assert guard.measurement(bad, watched) is Fault.NOT_FINITE
+    assert guard.measurement(bad, watched) is Fault.SHAPE
     with pytest.raises(ShapeError, match="q must have shape"):
         guard.init(replace(reading(0.0), q=np.zeros(4)))
 
 
 def test_what_was_clamped_is_finite_too() -> None:
-    guard, _ = started()
-    sent, fault = guard.command(replace(command(), clamped=np.full(3, np.nan)), 3)
+    guard, watched = started()
+    sent, fault = guard.command(replace(command(), clamped=np.full(3, np.nan)), watched)
     assert fault is Fault.NONE
     assert np.isfinite(sent.clamped).all()
-    sent, fault = guard.command(command(1e6), 3)
+    sent, fault = guard.command(command(1e6), watched)
     assert fault is Fault.BEYOND_LIMIT
     np.testing.assert_allclose(sent.torque + sent.clamped, 1e6)
+
+
+BELIEVED = Environment(1e4, 10.0, 100.0, np.inf)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"environments": {"foot": replace(BELIEVED, stiffness=np.nan)}},
+        {"environments": {"foot": replace(BELIEVED, damping=np.inf)}},
+        {"environments": {"foot": replace(BELIEVED, damping_std=np.nan)}},
+        {"time": np.nan},
+        {"time": 0.0},
+        {"time": -1.0},
+        {"v": np.zeros(4)},
+        {"v": np.zeros(3, complex)},
+        {"v": np.zeros(3, object)},
+        {"v": [0.0, 0.0, 0.0]},
+        {"disturbance": np.full(3, np.nan)},
+        {"wrenches": {"foot": np.zeros(3)}},
+    ],
+)
+def test_an_estimate_that_is_not_sound_is_found(changed: dict[str, Any]) -> None:
+    guard, watched = started()
+    sound = Estimate(0.0, *[np.zeros(3)] * 4, environments={"foot": BELIEVED})
+    assert guard.estimate(sound, watched) is Fault.NONE
+    assert guard.estimate(replace(sound, **{"time": PERIOD, **changed}), watched) is Fault.ESTIMATE
+    assert guard.estimate(replace(sound, time=2.0 * PERIOD), watched) is Fault.NONE
+
+
+@pytest.mark.parametrize("kind", [complex, object, "U8"])
+def test_arrays_that_are_not_of_real_numbers_are_found(kind: Any) -> None:
+    guard, watched = started()
+    odd = np.zeros(3).astype(kind)
+    assert guard.measurement(replace(reading(PERIOD), v=odd), watched) is Fault.SHAPE
+    assert guard.command(replace(command(), torque=odd), watched)[1] is Fault.COMMAND
+    assert guard.reference(Reference(0.0, posture=odd), watched) is Fault.REFERENCE
+
+
+def test_times_and_previews_are_looked_at_too() -> None:
+    guard, watched = started()
+    nodes = Preview(np.zeros(4), np.zeros((4, 3)), np.zeros((4, 3, 3)), np.zeros((4, 6)), np.zeros((4, 6)))
+    assert guard.reference(Reference(0.0, preview=nodes), watched) is Fault.NONE
+    for changed in ({"velocity": np.zeros((3, 6))}, {"wrench": np.full((4, 6), np.inf)}, {"time": None}):
+        spoilt: Any = replace(nodes, **changed)
+        assert guard.reference(Reference(0.0, preview=spoilt), watched) is Fault.REFERENCE
+    assert guard.reference(Reference(np.nan), watched) is Fault.REFERENCE
+    assert guard.reference(Reference(0.0, posture=np.zeros(4)), watched) is Fault.REFERENCE
+    assert guard.command(replace(command(), time=np.nan), watched)[1] is Fault.COMMAND
+
+
+def test_diagnostics_are_for_the_log_alone() -> None:
+    guard, watched = started()
+    told = replace(command(), diagnostics={"residual": np.nan})
+    assert guard.command(told, watched) == (told, Fault.NONE)
+
+
+def test_what_a_plant_says_of_itself_is_checked() -> None:
+    plant = Still()
+    plant.period = np.nan
+    with pytest.raises(ConfigError, match="period must be finite and above zero, got nan s"):
+        Guard(plant)
+    with pytest.raises(ConfigError, match="noisy sensors must be fields of Measurement, got 'speed'"):
+        Guard(Still(frozenset({"speed"})))
+
+
+@pytest.mark.parametrize(
+    ("part", "answer", "error", "sentence"),
+    [
+        ("plant", None, ConfigError, "the plant must give a Measurement, got NoneType"),
+        (
+            "plant",
+            replace(reading(0.0), v=np.zeros(4)),
+            ShapeError,
+            r"measurement's v must have shape \(3,\)",
+        ),
+        (
+            "plant",
+            replace(reading(0.0), wrenches={"foot": np.zeros(3)}),
+            ShapeError,
+            "wrench at 'foot' must have",
+        ),
+        ("estimator", 3, ConfigError, "the estimator must give Estimate, got int"),
+        ("estimator", Estimate(0.0, *[np.zeros(4)] * 4), ShapeError, r"the first estimate's q must have shape \(3,\)"),
+        ("source", None, ConfigError, "the source must give Reference, got NoneType"),
+        ("controller", None, ConfigError, "the controller must give Command, got NoneType"),
+        (
+            "controller",
+            Command(0.0, np.zeros(2), np.zeros(2)),
+            ShapeError,
+            "command's torque must have shape",
+        ),
+    ],
+)
+def test_parts_that_do_not_fit_are_named_before_anything_is_sent(
+    part: str, answer: Any, error: type[Exception], sentence: str
+) -> None:
+    sound = {"plant": reading(0.0), "estimator": Estimate(0.0, *[np.zeros(3)] * 4), "source": Reference(0.0)}
+    said: dict[str, Any] = {**sound, "controller": command(), part: answer}
+    plant = Still()
+    plant.init = lambda: (said["plant"], None)  # type: ignore[method-assign]
+    plant.step = lambda command, world: pytest.fail("something was sent")  # type: ignore[method-assign]
+    parts = [Says(said[name]) for name in ("estimator", "source", "controller")]
+    with pytest.raises(error, match=sentence):
+        loop.run(plant, *parts, range(3), robot=Robot.load("leg3"))  # type: ignore[arg-type]
+
+
+class Says:
+    """Any part: it gives the same answer at every step."""
+
+    def __init__(self, answer: Any) -> None:
+        self.answer = answer
+
+    def init(self, signal: object) -> None:
+        return None
+
+    def step(self, *signals: object) -> tuple[Any, None]:
+        return self.answer, None
 
 
 class Steady(Controller[None]):

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pliant.errors import ConfigError, PliantError, RobotError, RunFailedError, ShapeError, SignalError
+from pliant.errors import ConfigError, PliantError, RobotError, RunFailedError, ShapeError
 from pliant.guard import Fault, Guard
 from pliant.interfaces import Controller, Estimator, Observer, Plant, ReferenceSource
 from pliant.robot import Robot
-from pliant.signals import Measurement, Tick
+from pliant.signals import Tick
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,50 +61,59 @@ def run(
     guard = Guard(plant, robot)
     measurement, world = plant.init()
     est = ref = ctl = estimate = reference = command = watched = None
-    ticks = 0
+    ticks, now = 0, 0.0
     for _ in clock:
         start = planned = time.perf_counter()
         fresh = command is None  # the first tick: every part starts
         try:
             watched = watched or guard.init(measurement)
             fault = guard.measurement(measurement, watched)
+            now = guard.now(measurement, watched)
             if not fault:
                 est = estimator.init(measurement) if fresh else est
                 found, est = estimator.step(measurement, est)
-                fault = guard.estimate(found, len(measurement.q))
+                fault = guard.estimate(found, watched)
                 estimate = estimate if fault else found
             if not fault and estimate is not None:
                 ref = source.init(estimate) if fresh else ref
                 wanted, ref = source.step(estimate, ref)
-                fault = guard.reference(wanted)
+                fault = guard.reference(wanted, watched)
                 reference = reference if fault else wanted
             if not fault and estimate is not None and reference is not None:
                 ctl = controller.init(estimate) if fresh else ctl
                 planned = time.perf_counter()
                 answer, ctl = controller.step(estimate, reference, ctl)
-                answer, fault = guard.command(answer, len(measurement.q))
+                answer, fault = guard.command(answer, watched)
                 command = command if fault is Fault.COMMAND else answer
             if estimate is None or reference is None or command is None:
-                raise SignalError(f"the first tick cannot be computed: {fault.words}")
+                raise guard.why_not(fault, watched)
             command = guard.settled(command, fault, measurement, watched)
             wall = {"plan": planned - start, "control": time.perf_counter() - planned}
-            tick = Tick(measurement, estimate, reference, command, plant.truth(world), wall, int(fault))
+            tick = Tick(
+                guard.shown(fault, measurement, watched),
+                estimate,
+                reference,
+                command,
+                plant.truth(world),
+                wall,
+                int(fault),
+            )
         except Exception as error:  # whatever a part raises: the run ends in order
             if command is None and isinstance(error, ConfigError | ShapeError | RobotError):
                 raise  # parts that do not fit together: nothing has run
-            return _ended(ticks, measurement, error)
+            return _ended(ticks, now, error)
         for observe in observers:
             observe(tick)  # an observer's error is its own: a full disk is not the robot's failure
         try:
             measurement, world = plant.step(command, world)
         except Exception as error:
-            return _ended(ticks, measurement, error)
+            return _ended(ticks, now, error)
         ticks += 1
     return Outcome(ticks, measurement.time)
 
 
-def _ended(ticks: int, measurement: Measurement, error: Exception) -> Outcome:
+def _ended(ticks: int, now: float, error: Exception) -> Outcome:
     if not isinstance(error, PliantError):
         where = traceback.extract_tb(error.__traceback__)[-1]
         error = RunFailedError(f"{type(error).__name__} in {Path(where.filename).name}, line {where.lineno}: {error}")
-    return Outcome(ticks, measurement.time, f"{error} at t = {measurement.time:.4f} s")
+    return Outcome(ticks, now, f"{error} at t = {now:.4f} s")

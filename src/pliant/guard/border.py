@@ -1,0 +1,217 @@
+"""The guard at the border of every part of the loop: what is not a sound signal reaches no law and no robot.
+
+It looks at each measurement, estimate, reference and command. A tick whose signals are sound passes unchanged. In one
+whose signals are not, no part is stepped any further; the guard answers itself: the first such tick holds the last
+torque that was sent, the following ones compensate gravity with joint damping, within the limits. Once this has lasted
+`PATIENCE`, the run ends as failed. The kind of fault is in `Tick.guard`, in the log as `guard/fault`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.errors import PliantError, RunFailedError, SignalError
+from pliant.guard import sound
+from pliant.guard.faults import Fault
+from pliant.guard.first import check_first, check_plant, why_not
+from pliant.interfaces import Plant
+from pliant.robot import Robot
+from pliant.signals import Command, Estimate, Measurement, Reference
+from pliant.spatial import Array
+
+PATIENCE = 0.05  # s of faults in a row after which the run ends
+_DAMPING = 5.0  # N·m s/rad of each joint while the guard answers
+_FROZEN = 3  # equal readings in a row of a sensor whose noise says that no two are equal
+_LATE = 1.5  # periods between two readings from which the second one is late
+_ROUNDING = 1e-9  # of a torque limit; what more is beyond it is cut off and shown
+
+
+@dataclass(slots=True)
+class Watched:
+    """What the guard remembers. Consumed by its methods."""
+
+    reading: Measurement
+    """the last sound one"""
+    torque: Array
+    """(n,) the last torque sent, N·m"""
+    n: int
+    """number of joints"""
+    frames: tuple[str, ...]
+    """those of the force sensors"""
+    equal: dict[str, int] = field(default_factory=dict[str, int])
+    """signal → how many readings in a row were equal to the one before"""
+    estimated: float = -math.inf
+    """time of the last sound estimate, s"""
+    faults: int = 0
+    """ticks in a row with a fault, up to now"""
+    missed: int = 0
+    """ticks since the last reading that was sound in itself"""
+    refused: object = None
+    """the last estimate, reference or command that was not sound"""
+    seen: bool = False
+    """whether a reading has passed"""
+    last: dict[str, bytes] = field(default_factory=dict[str, bytes])
+    """signal → the last reading of a noisy sensor, sound or not"""
+
+
+class Guard:
+    """Checks the signals of one loop.
+
+    Args:
+        plant: says its period, which of its sensors are noisy, and what it compensates by itself.
+        robot: for limits and gravity. None: no limits are known, and the last torque is held instead of gravity's.
+
+    Raises:
+        ConfigError: what the plant says of itself breaks a rule.
+    """
+
+    def __init__(self, plant: Plant[object], robot: Robot | None = None) -> None:
+        check_plant(plant)
+        self._plant, self._robot = plant, robot
+        self._period, self._noisy = plant.period, plant.noisy
+        self._limit = None if robot is None else robot.torque_limit
+        self._bound = None if self._limit is None else self._limit * (1.0 + _ROUNDING)
+        self._data = None if robot is None else robot.model.createData()
+
+    def init(self, measurement: Measurement) -> Watched:
+        """Checks the first measurement, before anything is computed from it.
+
+        Raises:
+            ConfigError: it is no measurement.
+            ShapeError: it does not fit the robot.
+            SignalError: it is not finite.
+        """
+        check_first(measurement, None if self._robot is None else self._robot.n)
+        frames = tuple(measurement.wrenches)
+        if sound.reading_fault(measurement, len(measurement.q), frames):
+            raise SignalError(f"a measurement was not finite at t = {measurement.time:.4f} s, the first one")
+        sent = self._within(np.array(measurement.torque_sent))
+        return Watched(measurement, sent, len(measurement.q), frames)
+
+    # ------------------------------------------------------------------ signals
+
+    def measurement(self, reading: Measurement, watched: Watched) -> Fault:
+        """What is wrong with a measurement.
+
+        Raises:
+            SignalError: it is none.
+        """
+        if not isinstance(reading, Measurement):  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own part)
+            raise SignalError(f"the plant gave {type(reading).__name__} in place of a measurement")
+        watched.missed += 1
+        fault = sound.reading_fault(reading, watched.n, watched.frames)
+        if fault:
+            return fault
+        frozen = self._frozen(reading, watched)
+        step, due = reading.time - watched.reading.time, watched.missed
+        if watched.seen and step <= 0.0:
+            return Fault.STALE if step == 0.0 else Fault.BACKWARD
+        late = watched.seen and step > (due - 1 + _LATE) * self._period
+        watched.seen, watched.reading, watched.missed = True, reading, 0  # sound in itself: time goes on from it
+        if late:
+            return Fault.LATE
+        return Fault.FROZEN if frozen else Fault.NONE
+
+    def estimate(self, estimate: Estimate, watched: Watched) -> Fault:
+        """What is wrong with an estimate."""
+        if not sound.is_estimate(estimate, watched.n) or estimate.time <= watched.estimated:
+            watched.refused = estimate
+            return Fault.ESTIMATE
+        watched.estimated = estimate.time
+        return Fault.NONE
+
+    def reference(self, reference: Reference, watched: Watched) -> Fault:
+        """What is wrong with a reference."""
+        if sound.is_reference(reference, watched.n):
+            return Fault.NONE
+        watched.refused = reference
+        return Fault.REFERENCE
+
+    def command(self, command: Command, watched: Watched) -> tuple[Command, Fault]:
+        """A sound command within the limits, and what was wrong; with Fault.COMMAND it may not be used.
+
+        Its diagnostics are for the log alone and are not looked at.
+        """
+        n = watched.n
+        if not isinstance(command, Command) or not sound.is_torque(command.time, command.torque, n):  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own part)
+            watched.refused = command
+            return command, Fault.COMMAND
+        within, clamped = self._within(command.torque), command.clamped
+        if not sound.is_torque(command.time, clamped, n):
+            clamped = np.zeros(n)
+        if within is command.torque:
+            return command if clamped is command.clamped else replace(command, clamped=clamped), Fault.NONE
+        return replace(command, torque=within, clamped=clamped + command.torque - within), Fault.BEYOND_LIMIT
+
+    def now(self, reading: Measurement, watched: Watched) -> float:
+        """The time of a reading, sound or not; that of the last sound one if it has none. In s."""
+        return reading.time if math.isfinite(reading.time) else watched.reading.time
+
+    def shown(self, fault: Fault, reading: Measurement, watched: Watched) -> Measurement:
+        """The measurement for observers: one of another size fits no log, so the last sound one stands for it."""
+        return replace(watched.reading, time=self.now(reading, watched)) if fault is Fault.SHAPE else reading
+
+    def why_not(self, fault: Fault, watched: Watched) -> PliantError:
+        """The error for a first tick that cannot be computed."""
+        return why_not(fault, watched.refused, watched.n)
+
+    def settled(self, command: Command, fault: Fault, reading: Measurement, watched: Watched) -> Command:
+        """The command that is sent.
+
+        Args:
+            command: of this tick; after a fault, the last one that was sound.
+            fault: of this tick.
+            reading: of this tick, sound or not.
+            watched: what the guard remembers.
+
+        Raises:
+            RunFailedError: faults have lasted for `PATIENCE`.
+        """
+        if fault in (Fault.NONE, Fault.BEYOND_LIMIT):
+            watched.torque, watched.faults = command.torque, 0
+            return command
+        watched.faults += 1
+        if watched.faults * self._period > PATIENCE + 0.5 * self._period:
+            raise RunFailedError(f"{fault.words}; no sound signal came for {1e3 * PATIENCE:g} ms, so the run ended")
+        if watched.faults > 1:
+            watched.torque = self._gravity_and_damping(watched)
+        return Command(self.now(reading, watched), watched.torque, np.zeros(watched.n), command.diagnostics)
+
+    # ------------------------------------------------------------------ inside
+
+    def _within(self, torque: Array) -> Array:
+        """The torque itself if it keeps the limits, else what is left of it."""
+        if self._limit is None or not np.count_nonzero(np.abs(torque) > self._bound):
+            return torque
+        return np.clip(torque, -self._limit, self._limit)
+
+    def _gravity_and_damping(self, watched: Watched) -> Array:
+        """(n,) N·m at the last sound reading."""
+        if self._robot is None or self._data is None:
+            return watched.torque
+        reading = watched.reading
+        torque = -_DAMPING * reading.v
+        if self._plant.compensates == "none":
+            torque = torque + pin.computeGeneralizedGravity(self._robot.model, self._data, reading.q)
+        return self._within(torque)
+
+    def _frozen(self, reading: Measurement, watched: Watched) -> bool:
+        """Whether a noisy sensor has given equal readings for too long."""
+        frozen = False
+        for name in self._noisy:
+            now = _signal(reading, name)
+            count = watched.equal[name] = watched.equal.get(name, 0) + 1 if now == watched.last.get(name) else 0
+            watched.last[name] = now
+            frozen = frozen or count >= _FROZEN - 1
+        return frozen
+
+
+def _signal(reading: Measurement, name: str) -> bytes:
+    if name == "wrenches":
+        return b"".join([wrench.tobytes() for wrench in reading.wrenches.values()])
+    value: Array = getattr(reading, name)
+    return value.tobytes()
