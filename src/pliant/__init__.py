@@ -1,3 +1,105 @@
-"""pliant: contact control for torque-controlled robots."""
+"""pliant: contact control for torque-controlled robots.
+
+    result = pliant.run("haptic", controller="haptic", duration=1.5)
+    print(result.table())
+
+The names below are the interface; each is explained, with an example that runs, in docs/python.md. They are imported
+when they are asked for. Beside them, `pliant.controllers()` and `pliant.robots()` list what can be chosen by name, and
+`pliant.errors` holds every error. What else the package holds may change between two versions.
+"""
+
+# pyright: reportUnsupportedDunderAll=false
+import importlib
+from typing import Any
 
 __version__ = "0.1.0"
+
+_WHERE = {
+    "run": "pliant.face.run",
+    "compare": "pliant.face.run",
+    "Result": "pliant.face.result",
+    "Comparison": "pliant.face.result",
+    "Log": "pliant.telemetry.log",
+    "Metric": "pliant.telemetry.summary",
+    "Robot": "pliant.robot",
+    "Tool": "pliant.robot",
+    "MujocoPlant": "pliant.simulation",
+    "ImperfectPlant": "pliant.simulation",
+    "Imperfections": "pliant.simulation",
+    "ForceSensor": "pliant.simulation",
+    "Push": "pliant.simulation",
+    "Scene": "pliant.simulation",
+    "Surface": "pliant.simulation",
+    "Plane": "pliant.simulation",
+    "Box": "pliant.simulation",
+    "Ball": "pliant.simulation",
+    "floor": "pliant.simulation",
+    "table": "pliant.simulation",
+    "wall": "pliant.simulation",
+    "WrenchEstimator": "pliant.estimation",
+    "JointStateFilter": "pliant.estimation",
+    "MomentumObserver": "pliant.estimation",
+    "EnvironmentEstimator": "pliant.estimation",
+    "Controller": "pliant.interfaces",
+    "Needs": "pliant.interfaces",
+    "find_controller": "pliant.wiring.registry",
+    "PliantError": "pliant.errors",
+    "ConfigError": "pliant.errors",
+    "RobotError": "pliant.errors",
+    "RunFailedError": "pliant.errors",
+}
+"""name → module that has it"""
+_PACKAGES = ("controllers", "errors", "robots")
+
+__all__ = [
+    "Ball",
+    "Box",
+    "Comparison",
+    "ConfigError",
+    "Controller",
+    "EnvironmentEstimator",
+    "ForceSensor",
+    "ImperfectPlant",
+    "Imperfections",
+    "JointStateFilter",
+    "Log",
+    "Metric",
+    "MomentumObserver",
+    "MujocoPlant",
+    "Needs",
+    "Plane",
+    "PliantError",
+    "Push",
+    "Result",
+    "Robot",
+    "RobotError",
+    "RunFailedError",
+    "Scene",
+    "Surface",
+    "Tool",
+    "WrenchEstimator",
+    "__version__",
+    "compare",
+    "controllers",
+    "errors",
+    "find_controller",
+    "floor",
+    "robots",
+    "run",
+    "table",
+    "wall",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PACKAGES:
+        return importlib.import_module(f"pliant.{name}")
+    if name not in _WHERE:
+        raise AttributeError(f"module 'pliant' has no attribute {name!r}")
+    value = vars(importlib.import_module(_WHERE[name]))[name]
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

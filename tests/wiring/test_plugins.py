@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 import textwrap
 from pathlib import Path
 
+import pyarrow.parquet as pq
 import pytest
 
+from pliant.configuration import merged
 from pliant.errors import ConfigError
+from pliant.experiments.registry import get_study
+from pliant.experiments.runner import run_case
 from pliant.wiring.registry import find_controller
 
 MINE = textwrap.dedent(
@@ -24,6 +29,7 @@ MINE = textwrap.dedent(
     from pliant.entries import ControllerConfig
     from pliant.interfaces import ChannelUnit, Controller, Needs
     from pliant.signals import Command
+    from pliant.telemetry.summary import Metric
 
 
     class Spring(Controller):
@@ -56,6 +62,15 @@ MINE = textwrap.dedent(
             torque = J.T @ force - estimate.v
             sent = np.clip(torque, -self.robot.torque_limit, self.robot.torque_limit)
             return Command(estimate.time, sent, torque - sent, {"spring/force": force}), data
+
+
+    def strongest(log, config):
+        """Largest force of the spring."""
+        return Metric("strongest spring", abs(log["spring/force"]).max(), "N")
+
+
+    def broken(log, config):
+        return log["no/such/channel"]
     '''
 )
 
@@ -71,11 +86,14 @@ def test_a_controller_from_a_file_runs_with_its_parameters_units_and_needs(tmp_p
     (tmp_path / "mine.py").write_text(MINE)
     done = pliant(
         "run", "haptic", "--controller", "mine.py:Spring", "--set", "duration=0.1", "--set", "control.stiffness=800",
-        "--out", "out", cwd=tmp_path,
+        "--metric", "mine.py:strongest", "--out", "out", cwd=tmp_path,
     )  # fmt: skip
     assert "does not regulate a force" in done.stderr
     assert "never touched" in done.stderr  # it ran to its end, in the air
     assert done.returncode == 1
+    assert "strongest spring" in done.stdout
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["cases"][0]["controller"] == "mine.py:Spring"
     (log,) = (tmp_path / "out").glob("*.mcap")
     said = pliant("log", log, cwd=tmp_path)
     assert "spring/force" in said.stdout
@@ -86,11 +104,12 @@ def test_a_controller_from_a_module_is_swept_over_two_processes(tmp_path: Path) 
     (tmp_path / "my_control.py").write_text(MINE)
     done = pliant(
         "study", "haptic", "--case", "random", "--seeds", 2, "--jobs", 2, "--set", "controller=my_control:Spring",
-        "--set", "duration=0.1", "--out", "out", cwd=tmp_path,
+        "--set", "duration=0.1", "--metric", "my_control:strongest", "--out", "out", cwd=tmp_path,
     )  # fmt: skip
     assert "Traceback" not in done.stderr
     assert "never touched" in done.stderr
-    assert (tmp_path / "out" / "results.parquet").exists()
+    table = pq.read_table(tmp_path / "out" / "results.parquet")
+    assert min(table["strongest spring [N]"].to_pylist()) > 1.0
 
 
 @pytest.mark.parametrize(
@@ -126,3 +145,27 @@ def test_an_installed_package_offers_its_controllers_by_name(tmp_path: Path) -> 
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False, timeout=60
     )
     assert done.stdout.strip() == "A spring between a frame and its reference.", done.stderr
+
+
+@pytest.mark.parametrize(
+    ("metric", "message"),
+    [
+        ("mine.py:weakest", "mine.py has no 'weakest'"),
+        ("nothing", "there is no metric 'nothing'"),
+        ("math:pi", "must be a function"),
+    ],
+)
+def test_what_is_no_metric_is_refused_before_anything_runs(metric: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(MINE)
+    name = f"{tmp_path}/{metric}" if metric.startswith("mine") else metric
+    study = get_study("haptic")
+    with pytest.raises(ConfigError, match=message):
+        merged(study.case("floor"), {"own_metrics": [name]})
+
+
+def test_a_metric_that_fails_says_which_and_why(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(MINE)
+    study = get_study("haptic")
+    changes = {"own_metrics": [f"{tmp_path}/mine.py:broken"], "duration": 0.01, "checks": []}
+    with pytest.raises(ConfigError, match="no/such/channel"):
+        run_case(study, merged(study.case("floor"), changes))

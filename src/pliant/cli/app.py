@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, ParamSpec
@@ -56,7 +57,20 @@ Sets = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Overrides one value, e.g. plant.period=0.002; repeatable."),
 ]
-Controller = Annotated[str | None, typer.Option(help="Controller by name; see `pliant list controllers`.")]
+Controller = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME|MODULE:CLASS|FILE.py:CLASS", help="Controller by name, see `pliant list controllers`, or yours."
+    ),
+]
+Metrics = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--metric",
+        metavar="MODULE:FUNCTION|FILE.py:FUNCTION",
+        help="One more metric, a function (log, config) -> pliant.Metric; repeatable.",
+    ),
+]
 RobotOption = Annotated[
     str | None, typer.Option("--robot", metavar="NAME|FILE", help="Catalogue name, or a URDF or MJCF file.")
 ]
@@ -76,6 +90,7 @@ def run(
     controller: Controller = None,
     robot: RobotOption = None,
     seed: Seed = None,
+    metric: Metrics = None,
     out: Out = None,
     set_: Sets = None,
     live: Annotated[
@@ -85,7 +100,7 @@ def run(
     """Runs one case: a table, figures, a log and summary.json."""
     from pliant.cli.run import run_command
 
-    overrides = {"controller": controller, "robot": robot, "seed": seed}
+    overrides = {"controller": controller, "robot": robot, "seed": seed, "own_metrics": metric}
     run_command(_out, _err, target, case, overrides, set_ or [], out, live)
 
 
@@ -120,6 +135,7 @@ def study(
         int | None, typer.Option(min=1, help="Parameter sets that --tune tries.", show_default="64")
     ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of --tune's search.", show_default="0")] = None,
+    metric: Metrics = None,
     out: Out = None,
     set_: Sets = None,
 ) -> None:
@@ -127,12 +143,19 @@ def study(
     from pliant.cli.study import resume_command, study_command
     from pliant.experiments.results import Request
 
-    rest = {"--case": case, "--seeds": seeds, "--logs": logs}
+    rest = {"--case": case, "--seeds": seeds, "--logs": logs, "--metric": metric}
     if tune is not None:
         from pliant.cli.tune import tune_command
 
         _refuse(
-            "--tune", {"--seeds": seeds, "--logs": logs, "--resume": resume, "more than one --case": (case or [])[1:]}
+            "--tune",
+            {
+                "--seeds": seeds,
+                "--logs": logs,
+                "--resume": resume,
+                "--metric": metric,
+                "more than one --case": (case or [])[1:],
+            },
         )
         where = case[0] if case else None
         tune_command(
@@ -145,7 +168,8 @@ def study(
         _refuse("--resume", rest | {"--set": set_, "--out": out})
         resume_command(_out, _err, resume, name, jobs, scheduler)
         return
-    request = Request(name or "stack", tuple(case or ()), seeds, tuple(set_ or ()), logs)
+    own = (f"own_metrics={json.dumps(metric)}",) if metric else ()
+    request = Request(name or "stack", tuple(case or ()), seeds, (*(set_ or ()), *own), logs)
     study_command(_out, _err, request, out, jobs, scheduler)
 
 
@@ -215,6 +239,21 @@ def list_(
     from pliant.cli.listing import list_command
 
     list_command(_out, what)
+
+
+@app.command()
+@_guarded
+def new(
+    what: Annotated[str, typer.Argument(metavar="controller", help="What to begin.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, a Python class: MyController.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="FILE.py", help="The file (default: my_controller.py).")
+    ] = None,
+) -> None:
+    """Writes the beginning of a controller of your own that runs, and a test of it."""
+    from pliant.cli.new import new_command
+
+    new_command(_out, what, name, out)
 
 
 @app.command()

@@ -11,10 +11,10 @@ from rich.console import Console
 
 from pliant.cli.progress import progress_bar
 from pliant.cli.report import print_results, save_summary
-from pliant.errors import ConfigError, RunFailedError, options
+from pliant.errors import RunFailedError
 from pliant.experiments.base import CaseConfig, Experiment, Study
-from pliant.experiments.config import merged, parse_assignments, read_toml
-from pliant.experiments.registry import get_study, study_names
+from pliant.experiments.choice import chosen
+from pliant.experiments.config import parse_assignments
 from pliant.experiments.runner import run_case
 from pliant.telemetry.output import output_folder
 
@@ -92,22 +92,8 @@ def _page(
 def resolve(
     target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]
 ) -> tuple[Study[Any], CaseConfig]:
-    """The study and the checked configuration that a user means: case defaults, then the TOML file, then the
-    options."""
-    values: dict[str, Any] = {}
-    if target.endswith(".toml"):
-        values = read_toml(Path(target))
-        name = values.pop("study", None)
-        if name is None:
-            raise ConfigError(f"{target} needs a key 'study'; {options(study_names())}")
-        study = get_study(str(name))
-    else:
-        study = get_study(target)
-    from_file = values.pop("case", None)
-    config = study.case(case or from_file or next(iter(study.cases)))
-    config = merged(config, values)
-    config = merged(config, {key: value for key, value in overrides.items() if value is not None})
-    return study, merged(config, parse_assignments(assignments))
+    """The study and the checked configuration that a user means on the command line. Raises ConfigError."""
+    return chosen(target, case, overrides, parse_assignments(assignments))
 
 
 def default_folder(study: Study[Any], case: str) -> Path:

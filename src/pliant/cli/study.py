@@ -9,13 +9,14 @@ from typing import Any
 from rich.console import Console
 
 from pliant.cli.progress import count_bar
-from pliant.cli.report import print_results, save_summary, summarised
+from pliant.cli.report import print_results, save_summary
 from pliant.errors import ConfigError, RunFailedError
 from pliant.experiments.base import CaseConfig, Result, Study
 from pliant.experiments.lock import locked
 from pliant.experiments.pool import open_pool
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, ResultStore, Run, key, read_results, unsettled
+from pliant.experiments.summarise import summarised
 from pliant.experiments.sweep import asked_runs, check_buildable, sweep
 from pliant.telemetry.markdown import summary_markdown
 from pliant.telemetry.output import output_folder, write_text

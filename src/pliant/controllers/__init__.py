@@ -5,5 +5,8 @@ from pliant.controllers.fractal_impedance import FractalImpedance
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.controllers.stack import Stack, StackState
 from pliant.controllers.task import FrameTask
+from pliant.lazy import make_callable
 
 __all__ = ["ForceProfile", "FractalImpedance", "FrameTask", "Law", "PhaseSettings", "Shape", "Stack", "StackState"]
+
+make_callable(__name__, "pliant.wiring.registry", "controllers")

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from pliant.controllers.joint_limits import JointLimitsConfig
-from pliant.errors import ConfigError, options
+from pliant.errors import ConfigError, PliantError, options
 from pliant.experiments.config import Config
+from pliant.experiments.own_metrics import find_metric
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 from pliant.wiring.experiment import Experiment as Experiment
@@ -41,6 +42,19 @@ class CaseConfig(Config):
     variant: str = Field(
         default="", description="what distinguishes this run from others of the same case and controller"
     )
+    own_metrics: tuple[str, ...] = Field(
+        default=(), description="metrics beside the study's: names, my_module:metric or my_file.py:metric"
+    )
+
+    @field_validator("own_metrics")
+    @classmethod
+    def _are_metrics(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        try:
+            for name in names:
+                find_metric(name)
+        except PliantError as error:
+            raise ValueError(str(error)) from None
+        return names
 
 
 C = TypeVar("C", bound=CaseConfig)

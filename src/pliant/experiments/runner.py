@@ -11,6 +11,7 @@ from typing import Any
 
 from pliant import loop
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
+from pliant.experiments.own_metrics import own_metrics
 from pliant.experiments.verdict import StartNotes, physical_verdict
 from pliant.interfaces import Observer
 from pliant.signals import Tick
@@ -102,7 +103,7 @@ def _measured(
     if failure is not None:
         return Result(config, (), failure, wired.warnings, path)
     drawn = study.figures(config, wired, log, folder) if folder is not None and figures else []
-    measured = study.metrics(config, log)
+    measured = (*study.metrics(config, log), *own_metrics(config.own_metrics, config, log))
     verdicts = (study.verdict(config, measured), physical_verdict(log, wired.robot))
     failure = "; ".join(verdict for verdict in verdicts if verdict) or None
     return Result(config, measured, failure, wired.warnings, path, tuple(drawn))

@@ -14,6 +14,7 @@ from pliant.experiments.config import merged, parse_assignments
 from pliant.experiments.pool import Lost, Pool, in_this_process
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, Run, key
+from pliant.experiments.row_keys import refuse_row_keys
 from pliant.experiments.runner import run_case
 
 MOST_SEEDS = 100_000
@@ -36,14 +37,18 @@ def asked_runs(request: Request) -> list[CaseConfig]:
     """Every run that a request stands for, each once.
 
     Raises:
-        ConfigError: an unknown study, case or key, or a value that breaks a rule.
+        ConfigError: an unknown study, case or key, a value that breaks a rule, or a key that rows set themselves.
     """
     study = get_study(request.study)
     if request.seeds is not None and not 1 <= request.seeds <= MOST_SEEDS:
         raise ConfigError(f"a sweep takes 1 to {MOST_SEEDS} seeds per case, got {request.seeds}")
     changes = parse_assignments(request.assignments)
     cases = request.cases or tuple(study.cases)
-    runs = [merged(config, changes) for case in cases for config in study.runs(case, request.seeds)]
+    runs: list[CaseConfig] = []
+    for case in cases:
+        rows = study.runs(case, request.seeds)
+        refuse_row_keys(study.case(case), rows, changes)
+        runs += [merged(config, changes) for config in rows]
     return list({key(config): config for config in runs}.values())
 
 

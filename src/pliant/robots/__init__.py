@@ -7,6 +7,7 @@ import importlib.util
 from pathlib import Path
 
 from pliant.errors import MissingExtraError, RobotError, options
+from pliant.lazy import make_callable
 from pliant.robots.catalogue import CATALOGUE as CATALOGUE
 from pliant.robots.catalogue import CatalogueEntry as CatalogueEntry
 
@@ -85,3 +86,6 @@ def _example_robot_data() -> Path | None:
         if folder.is_dir():
             return folder
     return None
+
+
+make_callable(__name__, "pliant.robots.catalogue", "robots")

@@ -145,3 +145,8 @@ _MODULE_ENTRIES = (
 
 CATALOGUE: Mapping[str, CatalogueEntry] = {entry.name: entry for entry in (*_OWN, *_DATA_ENTRIES, *_MODULE_ENTRIES)}
 """name → entry"""
+
+
+def robots() -> Mapping[str, CatalogueEntry]:
+    """Name → every robot of the catalogue."""
+    return CATALOGUE

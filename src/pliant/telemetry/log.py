@@ -7,13 +7,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, OutputError, options
 from pliant.spatial import Array
+from pliant.telemetry.columns import columns, data_frame
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.mcap.reader import Contents, read
 from pliant.telemetry.mcap.topics import FIELDS, PREFIX
@@ -144,6 +145,19 @@ class Log:
     def phases(self) -> list[tuple[float, str]]:
         """Begin (s) and name of each phase of the reference."""
         return list(self._phases)
+
+    def to_pandas(self, *names: str) -> Any:
+        """Channels as a pandas DataFrame, a column per number, "time" in s first; see `telemetry.columns`.
+
+        Raises:
+            ConfigError: an unknown channel, or channels that were not sampled at the same times.
+            MissingExtraError: pandas is not installed.
+        """
+        return data_frame("pandas", columns(self, names))
+
+    def to_polars(self, *names: str) -> Any:
+        """The same as a polars DataFrame."""
+        return data_frame("polars", columns(self, names))
 
     def _array(self, name: str) -> tuple[Array, Array]:
         if name not in self._stored:

@@ -1,0 +1,48 @@
+"""What `__init__.py` offers, for type checkers; a test compares the two."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pliant import errors as errors
+from pliant.entries import ControllerEntry
+from pliant.errors import ConfigError as ConfigError
+from pliant.errors import PliantError as PliantError
+from pliant.errors import RobotError as RobotError
+from pliant.errors import RunFailedError as RunFailedError
+from pliant.estimation import EnvironmentEstimator as EnvironmentEstimator
+from pliant.estimation import JointStateFilter as JointStateFilter
+from pliant.estimation import MomentumObserver as MomentumObserver
+from pliant.estimation import WrenchEstimator as WrenchEstimator
+from pliant.face.result import Comparison as Comparison
+from pliant.face.result import Result as Result
+from pliant.face.run import compare as compare
+from pliant.face.run import run as run
+from pliant.interfaces import Controller as Controller
+from pliant.interfaces import Needs as Needs
+from pliant.robot import Robot as Robot
+from pliant.robot import Tool as Tool
+from pliant.robots.catalogue import CatalogueEntry
+from pliant.simulation import Ball as Ball
+from pliant.simulation import Box as Box
+from pliant.simulation import ForceSensor as ForceSensor
+from pliant.simulation import Imperfections as Imperfections
+from pliant.simulation import ImperfectPlant as ImperfectPlant
+from pliant.simulation import MujocoPlant as MujocoPlant
+from pliant.simulation import Plane as Plane
+from pliant.simulation import Push as Push
+from pliant.simulation import Scene as Scene
+from pliant.simulation import Surface as Surface
+from pliant.simulation import floor as floor
+from pliant.simulation import table as table
+from pliant.simulation import wall as wall
+from pliant.telemetry.log import Log as Log
+from pliant.telemetry.summary import Metric as Metric
+from pliant.wiring.registry import find_controller as find_controller
+
+__version__: str
+
+def controllers() -> Mapping[str, ControllerEntry[Any]]:
+    """Name → every controller that can be chosen: summary, needs, guarantees, default parameters."""
+
+def robots() -> Mapping[str, CatalogueEntry]:
+    """Name → every robot of the catalogue."""

@@ -1,0 +1,1 @@
+"""What `import pliant` offers beside its parts: run, compare, and what they return."""

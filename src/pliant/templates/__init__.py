@@ -1,0 +1,1 @@
+"""Files that `pliant new` writes: they are whole, and checked like the rest."""

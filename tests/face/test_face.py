@@ -1,0 +1,96 @@
+"""What `import pliant` offers: cheap, complete, typed, and as the documentation shows it."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import pliant
+from pliant.errors import ConfigError
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "python.md").read_text()
+
+
+def blocks(text: str) -> list[str]:
+    return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+
+
+def test_importing_it_loads_nothing_heavy() -> None:
+    code = "import sys, pliant; print([m for m in sys.modules if m.split('.')[0] in ('numpy', 'pinocchio', 'mujoco')])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_name_resolves_and_is_told_to_type_checkers() -> None:
+    tree = ast.parse((Path(pliant.__file__).parent / "__init__.pyi").read_text())
+    typed = {
+        alias.asname or ""
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if alias.asname
+    }
+    typed |= {node.name for node in tree.body if isinstance(node, ast.FunctionDef)} | {"__version__"}
+    assert typed == set(pliant.__all__)
+    for name in pliant.__all__:
+        assert getattr(pliant, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'rnu'"):
+        _ = pliant.rnu  # type: ignore[attr-defined]
+
+
+def test_every_name_has_an_example() -> None:
+    used = set(re.findall(r"pliant\.(\w+)", "\n".join(blocks(PAGE))))
+    assert set(pliant.__all__) - {"__version__"} <= used
+
+
+def test_the_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
+    scope: dict[str, object] = {}
+    for block in blocks(PAGE):
+        exec(compile(block, "docs/python.md", "exec"), scope)
+    said = capsys.readouterr().out
+    assert "hold, rms" in said
+    assert "did you mean 'haptic'" in said
+    assert "did you mean 'iiwa14'" in said
+
+
+def test_the_example_of_the_readme_moves_a_robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (block, *_) = blocks((ROOT / "README.md").read_text())
+    lines = [line for line in block.splitlines() if line.strip()]
+    assert len(lines) <= 5
+    monkeypatch.chdir(tmp_path)
+    scope: dict[str, Any] = {}
+    exec(compile(block, "README.md", "exec"), scope)
+    q = scope["result"].log["measurement/q"]
+    assert abs(q[-1] - q[0]).max() > 0.1  # rad
+    assert not list(tmp_path.iterdir())  # nothing is written unless a folder is given
+
+
+def test_an_object_that_can_be_run_takes_the_place_of_a_name() -> None:
+    class Task:
+        def chosen(self, case, overrides, changes):  # type: ignore[no-untyped-def]
+            assert (case, overrides["controller"], changes) == ("floor", "haptic", {"control": {"a": 1}})
+            raise ConfigError("asked")
+
+    with pytest.raises(ConfigError, match="asked"):
+        pliant.run(Task(), case="floor", controller="haptic", **{"control.a": 1})
+
+
+@pytest.mark.parametrize("package", ["pandas", "polars"])
+def test_a_log_as_a_data_frame(package: str) -> None:
+    from pliant.telemetry.columns import columns
+
+    result = pliant.run("haptic", duration=0.01, steps=[{"target": (0.0, 0.0, 0.25)}], checks=[])
+    found = columns(result.log, ("command/torque", "measurement/q"))
+    labels = result.log.channels["command/torque"].labels
+    assert list(found)[:2] == ["time", f"command/torque.{labels[0]}"]
+    assert found[f"command/torque.{labels[2]}"] == pytest.approx(result.log["command/torque"][:, 2])
+    pytest.importorskip(package)
+    frame = result.log.to_pandas() if package == "pandas" else result.log.to_polars()
+    assert frame["time"][3] == pytest.approx(0.003)
