@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pliant.errors import ConfigError
+from pliant.experiments.registry import study_names
 from pliant.experiments.results import Request
 from pliant.experiments.sweep import asked_runs
 
@@ -13,9 +14,8 @@ from pliant.experiments.sweep import asked_runs
     ("study", "case", "change", "count"),
     [
         ("polishing", "horizon", "control.horizon=3", "336 of its 336"),
-        ("polishing", "horizon", "controller=haptic", "of its"),
         ("polishing", "tables-2-3-4", "table.tilt=0.1", "of its"),
-        ("stack", "figure8-pushed", "seed=3", "--seeds"),
+        ("polishing", "force-weight", "control.costs.force.weight=1.0", "of its"),
     ],
 )
 def test_a_key_that_rows_set_is_refused(study: str, case: str, change: str, count: str) -> None:
@@ -33,3 +33,18 @@ def test_other_keys_change_every_row_and_leave_what_tells_them_apart() -> None:
         assert after.table.stiffness == 5e3
         assert after.control == before.control | {"max_iterations": 2}
         assert (after.variant, after.seed) == (before.variant, before.seed)
+
+
+def test_another_controller_makes_rows_the_same_and_each_is_run_once() -> None:
+    found = asked_runs(Request("haptic", ("random",), 2, ("controller=stack",)))
+    assert [(run.controller, run.seed) for run in found] == [("stack", 0), ("stack", 1)]
+
+
+def test_rows_that_would_have_the_same_name_are_refused() -> None:
+    with pytest.raises(ConfigError, match="two different runs of case 'slow' would have the same name"):
+        asked_runs(Request("polishing", ("slow",), 1, ("controller=haptic",)))
+
+
+@pytest.mark.parametrize("name", study_names())
+def test_every_row_of_every_study_has_a_name_of_its_own(name: str) -> None:
+    assert asked_runs(Request(name, (), 2))

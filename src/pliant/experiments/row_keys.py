@@ -9,7 +9,8 @@ from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
 
 _ABSENT = object()
-_REMEDIES = {"seed": "`--seeds` says how many there are", "controller": "`pliant run --controller` makes one run"}
+_LABELS = ("controller", "variant", "seed")
+"""what a row is named after; setting one makes rows the same, not wrong"""
 
 
 def refuse_row_keys(base: CaseConfig, rows: Sequence[CaseConfig], changes: Mapping[str, Any]) -> None:
@@ -27,12 +28,24 @@ def refuse_row_keys(base: CaseConfig, rows: Sequence[CaseConfig], changes: Mappi
     dumped = [row.model_dump() for row in rows]
     for key in _leaves(changes):
         own = [row for row in dumped if _at(row, key) != _at(values, key)]
-        if own:
+        if own and key[0] not in _LABELS:
             name = ".".join(key)
-            remedy = _REMEDIES.get(name, "`pliant run` makes one run with any value")
             raise ConfigError(
                 f"{name!r} cannot be set for the whole case {base.case!r}: {len(own)} of its {len(rows)} runs have a"
-                f" value of their own and are named after it; {remedy}"
+                " value of their own and are named after it; `pliant run` makes one run with any value"
+            )
+
+
+def refuse_same_names(runs: Sequence[CaseConfig]) -> None:
+    """Raises ConfigError if two different runs of a sweep would have the same case, controller, variant and seed."""
+    named: dict[tuple[object, ...], CaseConfig] = {}
+    for run in runs:
+        name = (run.case, run.controller, run.variant, run.seed)
+        if named.setdefault(name, run) != run:
+            raise ConfigError(
+                f"two different runs of case {run.case!r} would have the same name (controller {run.controller},"
+                f" variant {run.variant!r}, seed {run.seed}): its rows differ in more than what was set;"
+                " `pliant run` makes one run"
             )
 
 

@@ -14,7 +14,7 @@ from pliant.experiments.config import merged, parse_assignments
 from pliant.experiments.pool import Lost, Pool, in_this_process
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, Run, key
-from pliant.experiments.row_keys import refuse_row_keys
+from pliant.experiments.row_keys import refuse_row_keys, refuse_same_names
 from pliant.experiments.runner import run_case
 
 MOST_SEEDS = 100_000
@@ -49,7 +49,9 @@ def asked_runs(request: Request) -> list[CaseConfig]:
         rows = study.runs(case, request.seeds)
         refuse_row_keys(study.case(case), rows, changes)
         runs += [merged(config, changes) for config in rows]
-    return list({key(config): config for config in runs}.values())
+    found = list({key(config): config for config in runs}.values())
+    refuse_same_names(found)
+    return found
 
 
 def check_buildable(study_name: str, config: CaseConfig) -> None:
