@@ -1,10 +1,5 @@
-"""What `__init__.py` offers, for type checkers; a test compares the two."""
+"""What `__init__.py` offers, for type checkers; a test compares the two. Packages and modules are found as such."""
 
-from collections.abc import Mapping
-from typing import Any
-
-from pliant import errors as errors
-from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError as ConfigError
 from pliant.errors import PliantError as PliantError
 from pliant.errors import RobotError as RobotError
@@ -21,7 +16,6 @@ from pliant.interfaces import Controller as Controller
 from pliant.interfaces import Needs as Needs
 from pliant.robot import Robot as Robot
 from pliant.robot import Tool as Tool
-from pliant.robots.catalogue import CatalogueEntry
 from pliant.simulation import Ball as Ball
 from pliant.simulation import Box as Box
 from pliant.simulation import ForceSensor as ForceSensor
@@ -40,9 +34,3 @@ from pliant.telemetry.summary import Metric as Metric
 from pliant.wiring.registry import find_controller as find_controller
 
 __version__: str
-
-def controllers() -> Mapping[str, ControllerEntry[Any]]:
-    """Name → every controller that can be chosen: summary, needs, guarantees, default parameters."""
-
-def robots() -> Mapping[str, CatalogueEntry]:
-    """Name → every robot of the catalogue."""

@@ -37,7 +37,7 @@ def test_every_name_resolves_and_is_told_to_type_checkers() -> None:
         for alias in node.names
         if alias.asname
     }
-    typed |= {node.name for node in tree.body if isinstance(node, ast.FunctionDef)} | {"__version__"}
+    typed |= {"__version__", "controllers", "errors", "robots"}  # the last three are packages and a module
     assert typed == set(pliant.__all__)
     for name in pliant.__all__:
         assert getattr(pliant, name) is not None
