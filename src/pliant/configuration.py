@@ -73,7 +73,7 @@ def merged(config: C, changes: Mapping[str, Any]) -> C:
     """
     if not changes:
         return config
-    return validated(type(config), _overlay(type(config), config.model_dump(), changes))
+    return validated(type(config), overlaid(type(config), config.model_dump(), changes))
 
 
 def validated(kind: type[C], values: Mapping[str, Any]) -> C:
@@ -84,15 +84,24 @@ def validated(kind: type[C], values: Mapping[str, Any]) -> C:
         raise ConfigError(_sentence(kind, error)) from None
 
 
-def _overlay(kind: type[BaseModel] | None, base: Any, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """The values with some replaced. Tables are merged key by key; a table of plain numbers is one value."""
+def overlaid(kind: type[BaseModel] | None, base: Any, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """The values with some replaced.
+
+    Tables are merged key by key; a table of plain numbers, or one of several forms, is one value.
+
+    Args:
+        kind: what the values are of, as far as it is known.
+        base: a table; anything else counts as an empty one.
+        changes: what replaces them.
+    """
     result = dict(base) if isinstance(base, Mapping) else {}
     for key, value in changes.items():
         field = None if kind is None else kind.model_fields.get(key)
         annotation = None if field is None else field.annotation
         nested = isinstance(value, Mapping) and isinstance(result.get(key), Mapping) and not _is_numbers(annotation)
         models = [] if _is_table(annotation) else _models_in(annotation)
-        result[key] = _overlay(models[0] if models else None, result[key], value) if nested else value
+        nested = nested and len(models) < 2
+        result[key] = overlaid(models[0] if models else None, result[key], value) if nested else value
     return result
 
 
@@ -117,7 +126,9 @@ def _toml_value(text: str) -> Any:
 
 
 def _sentence(kind: type[BaseModel], error: ValidationError) -> str:
-    first = error.errors()[0]
+    found = error.errors()
+    # where one of several forms is allowed, each complains: a rule that is broken says most
+    first = next((one for one in found if one["type"] == "value_error"), found[0])
     where = ".".join(str(part) for part in first["loc"])
     got = first.get("input")
     if first["type"] == "extra_forbidden":

@@ -16,6 +16,7 @@ from pliant.errors import ConfigError, options
 from pliant.interfaces import Compensation, Controller, Needs, ReferenceSource
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
+from pliant.surfaces import SurfaceGeometry
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
 
@@ -51,6 +52,8 @@ class Believed:
     """whether the first frame's orientation is asked for"""
     presses: str | None = None
     """frame from which a force is asked; None: no force is asked for"""
+    surface: SurfaceGeometry | None = None
+    """the surface that is pressed, as it is believed; None: horizontal"""
     compensation: Compensation = "none"
     """what the robot compensates by itself"""
     sensing_delay: float = 0.0

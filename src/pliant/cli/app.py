@@ -83,7 +83,8 @@ def run(
     target: Annotated[
         str,
         typer.Argument(
-            metavar="[STUDY|CONFIG.toml]", help="A study, or a TOML file with `study = ...` and any of its values."
+            metavar="[TASK.toml|TASK|STUDY|CONFIG.toml]",
+            help="A task file, a task or study by name, or a TOML file with `study = ...` and any of its values.",
         ),
     ] = "stack",
     case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
@@ -108,7 +109,8 @@ def run(
 @_guarded
 def study(
     name: Annotated[
-        str | None, typer.Argument(metavar="[STUDY]", help="Study; see `pliant list studies`.", show_default="stack")
+        str | None,
+        typer.Argument(metavar="[STUDY|TASK.toml]", help="Study or task file with [sweep].", show_default="stack"),
     ] = None,
     case: Annotated[list[str] | None, typer.Option(help="Only this case; repeatable.")] = None,
     seeds: Annotated[
@@ -183,7 +185,7 @@ def _refuse(option: str, others: Mapping[str, object]) -> None:
 @_guarded
 def live(
     target: Annotated[
-        str, typer.Argument(metavar="[STUDY|CONFIG.toml|FILE.mcap]", help="What to run, or a log to replay.")
+        str, typer.Argument(metavar="[TASK.toml|STUDY|CONFIG.toml|FILE.mcap]", help="What to run, or a log to replay.")
     ] = "stack",
     case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
     controller: Controller = None,
@@ -232,10 +234,10 @@ def bench(
 @_guarded
 def list_(
     what: Annotated[
-        str | None, typer.Argument(metavar="[robots|controllers|studies]", help="What to list; nothing: all.")
+        str | None, typer.Argument(metavar="[robots|controllers|studies|tasks]", help="What to list; nothing: all.")
     ] = None,
 ) -> None:
-    """Lists robots, controllers and studies."""
+    """Lists robots, controllers, studies and tasks."""
     from pliant.cli.listing import list_command
 
     list_command(_out, what)
@@ -244,16 +246,24 @@ def list_(
 @app.command()
 @_guarded
 def new(
-    what: Annotated[str, typer.Argument(metavar="controller", help="What to begin.")],
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, a Python class: MyController.")],
+    what: Annotated[str, typer.Argument(metavar="task|controller", help="What to begin.")],
+    name: Annotated[
+        str,
+        typer.Argument(metavar="PATTERN|NAME", help="A task's raster, spiral, circle, line, …; a Python class's name."),
+    ],
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE.py", help="The file (default: my_controller.py).")
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="The file (default: after its name).")
     ] = None,
+    robot: Annotated[str, typer.Option(metavar="NAME|FILE", help="The robot of a task.")] = "iiwa14",
 ) -> None:
-    """Writes the beginning of a controller of your own that runs, and a test of it."""
+    """Writes a file to begin with: a contact task, or a controller of your own with a test of it."""
     from pliant.cli.new import new_command
+    from pliant.cli.task import new_task_command
 
-    new_command(_out, what, name, out)
+    if what == "task":
+        new_task_command(_out, name, out, robot)
+    else:
+        new_command(_out, what, name, out)
 
 
 @app.command()
@@ -274,6 +284,47 @@ def doctor(
         print_robot(_out, robot)
     if robot is None or config is not None:
         doctor_command(_out, config)
+
+
+@app.command()
+@_guarded
+def compare(
+    target: Annotated[str, typer.Argument(metavar="TASK.toml|TASK|STUDY", help="What to run with each controller.")],
+    controllers: Annotated[
+        str, typer.Option(metavar="A,B,…", help="Controllers, by name or as MODULE:CLASS or FILE.py:CLASS.")
+    ],
+    case: Annotated[str | None, typer.Option(help="Variant of the task, or case of the study.")] = None,
+    seeds: Annotated[int, typer.Option(min=1, help="Seeds of each.")] = 3,
+    jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
+    out: Out = None,
+    set_: Sets = None,
+) -> None:
+    """Runs one task with several controllers, on the same seeds: one table, one figure."""
+    from pliant.cli.run import study_folder
+    from pliant.cli.study import study_command
+    from pliant.experiments.registry import get_study
+    from pliant.experiments.results import Request
+
+    names = tuple(name.strip() for name in controllers.split(",") if name.strip())
+    if not names:
+        raise ConfigError("--controllers needs at least one name, for example --controllers offset-free-mpc,haptic")
+    cases = (case or next(iter(get_study(target).cases)),)
+    request = Request(target, cases, seeds, tuple(set_ or ()), controllers=names)
+    study_command(_out, _err, request, out or study_folder(target) / "compare", jobs, None)
+
+
+@app.command()
+@_guarded
+def task(
+    action: Annotated[str, typer.Argument(metavar="schema", help="What to do.")],
+    out: Out = None,
+) -> None:
+    """Says what can stand in a task file, as a JSON schema."""
+    from pliant.cli.task import schema_command
+
+    if action != "schema":
+        raise ConfigError(f"there is no action {action!r}; valid: schema")
+    schema_command(_out, out)
 
 
 def _version(show: bool) -> None:

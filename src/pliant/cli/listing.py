@@ -10,6 +10,7 @@ from rich.table import Table
 from pliant.errors import ConfigError, options
 from pliant.experiments.registry import get_study, study_names
 from pliant.robots import CATALOGUE, is_available
+from pliant.tasks.files import catalogue, load_task, read_task
 from pliant.wiring.registry import controllers
 
 
@@ -58,4 +59,20 @@ def _studies() -> Table:
     return table
 
 
-_LISTS: Mapping[str, Callable[[], Table]] = {"robots": _robots, "controllers": _controllers, "studies": _studies}
+def _tasks() -> Table:
+    table = Table("task", "robot", "surface", "path", "what it is", title="tasks", title_justify="left")
+    for name in catalogue():
+        found = read_task(name)
+        for variant, task in {name: found.task, **{key: load_task(name, key) for key in found.variants}}.items():
+            label = name if variant == name else f"  --case {variant}"
+            table.add_row(label, task.robot, task.surface.shape, task.path.pattern, task.description)
+    table.add_row("FILE.toml", "", "", "", "yours; `pliant new task raster` writes one to begin with")
+    return table
+
+
+_LISTS: Mapping[str, Callable[[], Table]] = {
+    "robots": _robots,
+    "controllers": _controllers,
+    "studies": _studies,
+    "tasks": _tasks,
+}

@@ -24,7 +24,7 @@ def new_command(console: Console, what: str, name: str, out: Path | None) -> Non
         OutputError: a file is there already, or cannot be written.
     """
     if what not in _KINDS:
-        raise ConfigError(f"there is no template {what!r}; {options(_KINDS, what)}")
+        raise ConfigError(f"there is no template {what!r}; {options([*_KINDS, 'task'], what)}")
     if not name.isidentifier() or keyword.iskeyword(name):
         raise ConfigError(f"a controller's name is that of a Python class, for example SoftSpring, got {name!r}")
     path = out or Path(f"{_snake(name)}.py")

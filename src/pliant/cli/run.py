@@ -98,4 +98,9 @@ def resolve(
 
 def default_folder(study: Study[Any], case: str) -> Path:
     """Where a run writes if nobody says."""
-    return Path("pliant-out") / study.name / case
+    return study_folder(study.name) / case
+
+
+def study_folder(name: str) -> Path:
+    """Where a study, or a task by the path of its file, writes if nobody says."""
+    return Path("pliant-out") / Path(name).stem

@@ -10,6 +10,7 @@ from rich.console import Console
 
 from pliant.cli.progress import count_bar
 from pliant.cli.report import print_results, save_summary
+from pliant.cli.run import study_folder
 from pliant.errors import ConfigError, RunFailedError
 from pliant.experiments.base import CaseConfig, Result, Study
 from pliant.experiments.lock import locked
@@ -34,7 +35,7 @@ def study_command(
         RunFailedError: every run failed.
     """
     asked = asked_runs(request)
-    folder = output_folder(out or Path("pliant-out") / request.study)
+    folder = output_folder(out or study_folder(request.study))
     with locked(folder):
         _run(console, complain, request, asked, [], folder, jobs, scheduler)
 

@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pliant.errors import ConfigError, options
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.config import merged, read_toml
-from pliant.experiments.registry import get_study, study_names
+from pliant.experiments.registry import get_study
 
 
 def chosen(
@@ -18,7 +17,8 @@ def chosen(
     """The study and the checked configuration: the case's defaults, then the file, then overrides, then changes.
 
     Args:
-        target: name of a study, or path of a TOML file with `study = …` and any of its values.
+        target: name of a study or of a task of the catalogue, path of a task file, or path of a TOML file with
+            `study = …` and any of its values.
         case: of the study; None: the file's, or the study's first.
         overrides: those that are None count as not given.
         changes: nested.
@@ -27,12 +27,8 @@ def chosen(
         ConfigError: an unknown study, case or key, or a value that breaks a rule.
     """
     values: dict[str, Any] = {}
-    if target.endswith(".toml"):
-        values = read_toml(Path(target))
-        name = values.pop("study", None)
-        if name is None:
-            raise ConfigError(f"{target} needs a key 'study'; {options(study_names())}")
-        target = str(name)
+    if target.endswith(".toml") and "study" in (found := read_toml(Path(target))):
+        target, values = str(found.pop("study")), found
     study = get_study(target)
     from_file = values.pop("case", None)
     return study, configured(study, case or from_file, [values, _given(overrides), changes])

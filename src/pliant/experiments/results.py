@@ -56,6 +56,8 @@ class Request:
     """`key=value`"""
     logs: bool = False
     """whether every run keeps its log"""
+    controllers: tuple[str, ...] = ()
+    """each runs every case, on the same seeds; empty: those of the study"""
 
 
 class ResultStore:
@@ -139,7 +141,7 @@ def read_results(path: Path) -> tuple[Request, list[Run]]:
             " mixed: install that version, or start the study again"
         )
     try:
-        about |= {name: tuple(about[name]) for name in ("cases", "assignments")}
+        about |= {name: tuple(about[name]) for name in ("cases", "assignments", "controllers")}
         request = TypeAdapter(Request).validate_python(about)
         kind = type(next(iter(get_study(request.study).cases.values())))
         return request, [_run(row, kind, path.parent) for row in table.to_pylist()]

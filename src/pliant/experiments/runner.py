@@ -54,7 +54,7 @@ def run_case(
     recorder = Recorder(
         None if folder is None else folder / f"{stem}.mcap", run_info(study, config, wired), channels=wired.channels
     )
-    ticks = round(config.duration / wired.plant.period)
+    ticks = round(run_length(config, wired) / wired.plant.period)
     notes = StartNotes()
     watchers: list[Observer] = [recorder, notes, *observers]
     if progress is not None:
@@ -67,6 +67,11 @@ def run_case(
     log = recorder.log()
     wired = replace(wired, warnings=(*wired.warnings, *(notes.sentences or ())))
     return _measured(study, config, wired, log, outcome.failure, folder, figures)
+
+
+def run_length(config: CaseConfig, experiment: Experiment) -> float:
+    """s: as configured, or until there is nothing more to do."""
+    return config.duration if experiment.duration is None else min(config.duration, experiment.duration)
 
 
 def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> RunInfo:

@@ -46,12 +46,21 @@ def asked_runs(request: Request) -> list[CaseConfig]:
     cases = request.cases or tuple(study.cases)
     runs: list[CaseConfig] = []
     for case in cases:
-        rows = study.runs(case, request.seeds)
+        rows = _compared(study.case(case), request) if request.controllers else study.runs(case, request.seeds)
         refuse_row_keys(study.case(case), rows, changes)
         runs += [merged(config, changes) for config in rows]
     found = list({key(config): config for config in runs}.values())
     refuse_same_names(found)
     return found
+
+
+def _compared(config: CaseConfig, request: Request) -> list[CaseConfig]:
+    """A case with each controller, on the same seeds."""
+    return [
+        merged(config, {"controller": name, "seed": config.seed + seed})
+        for name in request.controllers
+        for seed in range(request.seeds or 1)
+    ]
 
 
 def check_buildable(study_name: str, config: CaseConfig) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from pliant.entries import Believed
 from pliant.interfaces import Lookahead, Needs
-from pliant.mpc.config import Compensation, MpcConfig
+from pliant.mpc.config import Compensation, Contact, MpcConfig
 from pliant.mpc.costs import Phase, Term
 from pliant.robot import Robot
 
@@ -55,8 +55,17 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
             "phase_by": "name" if named else "contact",
             "phases": _phases(config, believed.phases) if named else _FELT,
             "compensation": _timed(config.compensation, believed),
+            "contact": _on_surface(config.contact, believed),
         }
     )
+
+
+def _on_surface(contact: Contact, believed: Believed) -> Contact:
+    """Force, and position beside it, in the axes of the believed surface, which turn along a path."""
+    if believed.surface is None:
+        return contact
+    normal = tuple(float(entry) for entry in believed.surface.normal(believed.surface.top()))
+    return contact.model_copy(update={"axes": "surface", "normal": normal})
 
 
 def _phases(config: MpcConfig, wanted: Mapping[str, bool]) -> dict[str, Phase]:

@@ -43,9 +43,11 @@ class Sensing:
 def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensing) -> Estimator[Any]:
     """Measurement → what a controller needs: filtered, with environment and disturbance where it asks for them.
 
-    The environment is looked for, and a normal force explained, along the world's z axis.
+    The environment is looked for, and a normal force explained, along the normal of the believed surface; along the
+    world's z axis where there is none.
     """
     gain, period = sensing.velocity_gain, believed.period
+    normal = (0.0, 0.0, 1.0) if believed.surface is None else believed.surface
     felt: Estimator[Any] = WrenchEstimator(robot, velocity_gain=gain) if sensing.felt else DirectEstimator(gain)
     if sensing.wrench_cutoff is not None:
         felt = FilteredEstimator(felt, wrench=Butterworth(sensing.wrench_cutoff, period))
@@ -57,7 +59,7 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensi
     if needs.environment:
         frame = believed.presses or believed.frames[0]
         fit = FitConfig(cutoff=_FIT_CUTOFF)
-        felt = EnvironmentEstimator(felt, robot, frame, period, config=fit, sliding=_SLIDING)
+        felt = EnvironmentEstimator(felt, robot, frame, period, normal=normal, config=fit, sliding=_SLIDING)
     if needs.disturbance == "none":
         return felt
     return MomentumObserver(
@@ -65,6 +67,7 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensi
         robot,
         gain=sensing.observer_gain,
         contact=needs.disturbance,
+        normal=normal,
         compensation=believed.compensation,
         late_readings=round(believed.sensing_delay / period),
     )

@@ -21,5 +21,7 @@ class Experiment:
     controller: Controller[Any]
     channels: tuple[Channel, ...] = ()
     """units of what the controller and the source report"""
+    duration: float | None = None
+    """s after which there is nothing more to do; None: it goes on"""
     warnings: tuple[str, ...] = ()
     """what is unsafe about the parameters, in sentences"""

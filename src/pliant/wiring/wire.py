@@ -37,6 +37,8 @@ class Offer:
     """springs that keep the joints off their limits; None: without"""
     channels: tuple[Channel, ...] = ()
     """units of what the source reports"""
+    duration: float | None = None
+    """s that the task takes; None: it goes on"""
     warnings: tuple[str, ...] = ()
 
 
@@ -78,6 +80,7 @@ def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offe
         source=entry.filter(offer.source(needs.preview), robot, parameters),
         controller=controller,
         channels=(*_channels(controller, entry, parameters, believed), *offer.channels),
+        duration=offer.duration,
         warnings=(
             *_unregulated(entry, core, believed),
             *entry.advise(robot, parameters, believed.period),

@@ -145,10 +145,10 @@ def first_postures(solver: PoseSolver, target: Target, nominal: Array | None, ch
         raise UnreachableError(_complaint(solver, best, target, 0.0))
     if nominal is not None:
         return sorted(found, key=lambda q: float(np.linalg.norm(q - nominal)))
-    return sorted(found, key=lambda q: -_freedom(solver, box, q))
+    return sorted(found, key=lambda q: -freedom(solver, box, q))
 
 
-def _freedom(solver: PoseSolver, box: Box, q: Array) -> float:
+def freedom(solver: PoseSolver, box: Box, q: Array) -> float:
     """Least joint range left, as a share of the half range, times the least singular value of the frame's Jacobian."""
     margin = float(np.min(np.minimum(q - box.lower, box.upper - q) / (box.upper - box.lower))) * 2.0
     return margin * float(np.linalg.svd(solver.jacobian(q), compute_uv=False)[-1])

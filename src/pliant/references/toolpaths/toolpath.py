@@ -132,6 +132,23 @@ def through(
     return replace(path, force=Spline(path.times, np.interp(shares, given, force)[:, None]))
 
 
+def resting(place: Array, normal: Array, time: float, motion: PathMotion, heading: Array) -> Toolpath:
+    """A path that stays at a place (3,) m of a surface with normal (3,) for a time in s."""
+    times = np.linspace(0.0, time, 5)
+    places, normals = np.tile(place, (5, 1)), np.tile(normal, (5, 1))
+    task = np.array([quaternion(R) for R in task_rotations(normals, heading)])
+    tool = np.array([quaternion(R) for R in tool_rotations(places, normals, heading)])
+    return Toolpath(
+        times,
+        places,
+        normals,
+        Spline(times, places + motion.lift * normals),
+        QuaternionSpline(times, tool),
+        QuaternionSpline(times, task),
+        Spline(times, (times / time)[:, None]),
+    )
+
+
 def timed(places: Array, normals: Array, speed: Array, motion: PathMotion, heading: Array) -> Toolpath:
     """A toolpath through places (k, 3) m of a surface with normals (k, 3), run at speeds (k,) m/s or less."""
     moved = np.concatenate([[True], np.linalg.norm(np.diff(places, axis=0), axis=1) > 1e-9])

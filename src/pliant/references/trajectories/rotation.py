@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from pliant.errors import ConfigError
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.time_scaling import Warp
 from pliant.references.trajectories.trajectory import vector
-from pliant.spatial import Array, cross
+from pliant.spatial import Array
 
 
 class Orientation(NamedTuple):
@@ -76,16 +77,25 @@ class QuaternionSpline(Turning):
 
     def at(self, time: float) -> Orientation:
         q, q_dot, q_ddot = self._spline.at(time)
-        inverse = q * (1.0, -1.0, -1.0, -1.0) / float(q @ q)
-        spin = _product(q_dot, inverse)  # scalar part: change of length; vector part: half the angular velocity
-        change = _product(q_ddot, inverse) - _product(spin, spin)
-        return Orientation(_matrix(q), 2.0 * spin[1:], 2.0 * change[1:])
+        w, x, y, z = q.tolist()
+        scale = 1.0 / (w * w + x * x + y * y + z * z)
+        inverse = (w * scale, -x * scale, -y * scale, -z * scale)
+        spin = _product(q_dot.tolist(), inverse)  # scalar: change of length; vector: half the angular velocity
+        change = _product(q_ddot.tolist(), inverse)
+        squared = _product(spin, spin)
+        acceleration = np.array([2.0 * (a - b) for a, b in zip(change[1:], squared[1:], strict=True)])
+        return Orientation(_matrix(q), 2.0 * np.array(spin[1:]), acceleration)
 
 
-def _product(a: Array, b: Array) -> Array:
-    """Hamilton product of quaternions (4,), scalar first."""
-    scalar = a[0] * b[0] - a[1:] @ b[1:]
-    return np.concatenate([[scalar], a[0] * b[1:] + b[0] * a[1:] + cross(a[1:], b[1:])])
+def _product(a: Sequence[float], b: Sequence[float]) -> tuple[float, float, float, float]:
+    """Hamilton product of quaternions, scalar first."""
+    (p, x, y, z), (q, u, v, w) = a, b
+    return (
+        p * q - x * u - y * v - z * w,
+        p * u + q * x + y * w - z * v,
+        p * v + q * y + z * u - x * w,
+        p * w + q * z + x * v - y * u,
+    )
 
 
 def _matrix(q: Array) -> Array:

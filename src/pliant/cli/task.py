@@ -1,0 +1,82 @@
+"""`pliant new task`, `pliant task schema`: task files, begun and described."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from rich.console import Console
+
+from pliant.errors import ConfigError, options
+from pliant.tasks.task import Task
+from pliant.telemetry.output import write_text
+
+_SIZES = {
+    "raster": ("size = [0.12, 0.08]", "m, along and across", "spacing = 0.02", "m"),
+    "spiral": ("size = [0.10, 0.10]", "m, outer diameters", "spacing = 0.02", "m"),
+    "circle": ("size = [0.10, 0.10]", "m, diameters", "turns = 2", ""),
+    "line": ("size = [0.15, 0.0]", "m, along and across"),
+    "square": ("size = [0.10, 0.10]", "m", "turns = 1", ""),
+    "lemniscate": ("size = [0.12, 0.06]", "m", "turns = 1", ""),
+    "hold": ("time = 4.0", "s"),
+    "file": ('file = "path.csv"', "columns x, y; z, time, speed, force if wanted", 'unit = "mm"', ""),
+}
+"""pattern → lines and what they mean"""
+_TEMPLATE = """\
+format = 1
+robot = "{robot}"                                 # `pliant list robots`, or a URDF or MJCF file
+controller = "offset-free-mpc"                  # `pliant list controllers`
+tool = {{ mass = 0.4, length = 0.2, radius = 0.015 }}
+[surface]                                       # plane, cylinder, sphere; as the controller believes it
+shape = "plane"
+stiffness = 2e4                                 # N/m
+[path]
+pattern = "{pattern}"
+{size}speed = 0.05                                    # m/s
+[force]
+normal = [[0.0, 5], [0.1, 20], [1.0, 20]]       # share of the path and N
+[truth]                                         # how the world differs; one draw a seed
+shift = {{ uniform = [-0.004, 0.004] }}           # m, along the normal
+tilt = {{ uniform = [-4, 4] }}                    # degrees, about a random axis
+imperfections = "p3"                            # noise, delays, friction in the drives
+[accept]
+force_error = 1.0                               # N
+"""
+_SAMPLE = "x,y\n-60,-20\n60,-20\n60,20\n-60,20\n"
+
+
+def new_task_command(console: Console, pattern: str, out: Path | None, robot: str) -> None:
+    """Writes a task file to begin with. Raises ConfigError for an unknown pattern or a file that is there already."""
+    if pattern not in _SIZES:
+        raise ConfigError(f"there is no pattern {pattern!r}; {options(_SIZES, pattern)}")
+    file = out or Path(f"{pattern}.toml")
+    parts = _SIZES[pattern]
+    lines = zip(parts[::2], parts[1::2], strict=True)
+    size = "".join(f"{line:48s}# {note}\n" if note else f"{line}\n" for line, note in lines)
+    written = {file: _TEMPLATE.format(robot=robot, pattern=pattern, size=size)}
+    if pattern == "file":
+        written[file.parent / "path.csv"] = _SAMPLE
+    for path in written:
+        if path.exists():
+            raise ConfigError(f"{path} exists already: choose another name with -o")
+    for path, text in written.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_text(path, text)
+        console.print(f"wrote    {path}", markup=False, highlight=False, soft_wrap=True)
+    console.print(
+        f"next     pliant task check {file}; pliant run {file}", markup=False, highlight=False, soft_wrap=True
+    )
+
+
+def schema_command(console: Console, out: Path | None) -> None:
+    """Prints, or writes, the JSON schema of a task file."""
+    text = json.dumps(Task.model_json_schema(), indent=2, ensure_ascii=False)
+    if out is not None:
+        write_text(out, text + "\n")
+        _say(console, f"schema   {out}")
+    else:
+        _say(console, text)
+
+
+def _say(console: Console, text: str) -> None:
+    console.print(text, markup=False, highlight=False, soft_wrap=True)

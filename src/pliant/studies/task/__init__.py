@@ -1,0 +1,1 @@
+"""Tasks from files, run and measured like the cases of any study."""

@@ -1,0 +1,76 @@
+"""Wires the loop of a task."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from pliant.experiments.model_error import with_mass_error
+from pliant.references.surface_task import SurfaceTask, SurfaceTaskSettings, surface_task
+from pliant.references.toolpaths.toolpath import Toolpath
+from pliant.robot import Robot
+from pliant.simulation.seeding import generator
+from pliant.studies.task.config import TaskCase
+from pliant.studies.task.geometry import believed_surface, force_of, robot_of, toolpath_of
+from pliant.studies.task.world import plant_of, true_surface
+from pliant.surfaces import SurfaceGeometry
+from pliant.tasks.parts import Truth
+from pliant.wiring.experiment import Experiment
+from pliant.wiring.wire import Offer, wired
+
+
+@dataclass(frozen=True)
+class Planned:
+    """What is known of a task before it runs; nothing of `truth` plays a part in it."""
+
+    robot: Robot
+    surface: SurfaceGeometry
+    """as it is believed"""
+    path: Toolpath
+    references: SurfaceTask
+
+
+def planned(case: TaskCase) -> Planned:
+    """Robot, believed surface, path and phases, with a posture on one branch along all of it.
+
+    Raises:
+        PliantError: a robot or path that there is not, or that the robot cannot follow.
+    """
+    believed = case.model_copy(update={"truth": Truth(), "seed": 0, "control": {}, "variant": "", "accept": {}})
+    return _planned(believed.model_dump_json())
+
+
+@lru_cache(maxsize=8)
+def _planned(text: str) -> Planned:
+    case = TaskCase.model_validate_json(text)
+    robot = robot_of(case, case.robot)
+    surface = believed_surface(case, robot)
+    path = toolpath_of(case, surface, robot)
+    phases = case.phases
+    settings = SurfaceTaskSettings(
+        phases.stand_off, phases.approach_speed, phases.search, phases.press, phases.leave, case.path.spins
+    )
+    references = surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
+    return Planned(robot, surface, path, references)
+
+
+def build(case: TaskCase) -> Experiment:
+    """Robot, plant, estimator, references and controller of one run.
+
+    Raises:
+        PliantError: a robot, frame or parameter that does not fit, or a path that the robot cannot follow.
+    """
+    made = planned(case)
+    robot, believed = made.robot, case.believed(made.surface)
+    surface = true_surface(case, made.surface, made.path)
+    offer = Offer(
+        robot=robot,
+        model=with_mass_error(robot, case.truth.link_masses, generator(case.seed, "model.masses")),
+        believed=believed,
+        plant=lambda felt: plant_of(case, robot, surface, made.references.start),
+        source=made.references.source,
+        torque_step=case.torque_step,
+        joint_limits=case.joint_limits,
+        duration=made.references.longest,
+    )
+    return wired(case.entry, case.parameters(robot, believed), offer)

@@ -1,0 +1,73 @@
+"""The configuration of one run of a task file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from pliant.configuration import merged
+from pliant.entries import Believed, ControllerConfig, ControllerEntry
+from pliant.experiments.base import CaseConfig
+from pliant.robot import Robot
+from pliant.studies.polishing.tuned import PRESETS
+from pliant.surfaces import SurfaceGeometry
+from pliant.tasks.task import Task, TaskParts
+from pliant.wiring.registry import find_controller
+from pliant.wiring.wire import parameters_for
+
+PHASES = {"approach": False, "press": True, "follow": True, "leave": False}
+"""name of each phase → whether the tool touches in it"""
+_WHOLE = 3600.0  # s
+
+
+class TaskCase(TaskParts, CaseConfig):
+    """A task with the robot, the controller and the seed of one run."""
+
+    duration: float = Field(
+        default=_WHOLE,
+        gt=0.0,
+        le=_WHOLE,
+        description="after which the run ends in any case; by default the whole path is run",
+        json_schema_extra={"unit": "s"},
+    )
+    control: dict[str, dict[str, Any]] = Field(
+        default={}, description="controller → changes to its parameters, e.g. control.haptic.exploration.mode"
+    )
+    torque_step: float | None = Field(
+        default=0.14,
+        gt=0.0,
+        description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
+        json_schema_extra={"unit": "1"},
+    )
+
+    @property
+    def entry(self) -> ControllerEntry[Any]:
+        """The chosen controller."""
+        return find_controller(self.controller)
+
+    def believed(self, surface: SurfaceGeometry) -> Believed:
+        """What the controller may know; nothing of `truth`. Args: surface: as it is believed."""
+        return Believed(
+            frames=(self.tool.frame,),
+            period=self.simulation.period,
+            presses=self.tool.frame,
+            surface=surface,
+            sensing_delay=self.timing.sensing_delay,
+            computation_delay=self.timing.computation_delay,
+            phases=PHASES,
+        )
+
+    def parameters(self, robot: Robot, believed: Believed) -> ControllerConfig:
+        """The controller's parameters: its defaults, weights tuned for a late or a prompt loop, what suits the task,
+        then `control`."""
+        entry = self.entry
+        late = self.timing.sensing_delay + self.timing.computation_delay > 0.0
+        base = merged(entry.default, PRESETS["tuned" if late else "perfect"].get(self.controller, {}))
+        return parameters_for(entry, robot, believed, self.control.get(self.controller, {}), base)
+
+
+def case_of(task: Task, name: str) -> TaskCase:
+    """The run of a task that is called `name`."""
+    values = task.model_dump()
+    return TaskCase.model_validate({**values, "case": name})

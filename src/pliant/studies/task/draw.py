@@ -1,0 +1,87 @@
+"""Figures of a task's run: signals over time, and the robot on its part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+
+from pliant.experiments.base import Experiment
+from pliant.experiments.runner import file_stem
+from pliant.simulation import ImperfectPlant, MujocoPlant
+from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
+from pliant.spatial import Array
+from pliant.studies.task.config import TaskCase
+from pliant.studies.task.measure import Signals
+from pliant.telemetry.log import Log
+from pliant.telemetry.plots import Curve, Panel, save, style, time_series
+
+_METRES_PER_NEWTON = 0.004
+_REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (0.76, 0.18, 0.18, 1.0)
+_SHARES = (0.02, 0.35, 0.65, 0.98)
+"""of the path, at which the robot is drawn"""
+
+
+def run_figures(case: TaskCase, experiment: Experiment, log: Log, signals: Signals, folder: Path) -> list[Path]:
+    """Force and distance from the path over time; force error along the way; the robot at four moments."""
+    stem = file_stem(case)
+    files = [save(_history(case, log, signals), folder / f"{stem}_history.png")]
+    scene = _moments(case, experiment, log, signals)
+    return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+
+
+def _history(case: TaskCase, log: Log, signals: Signals) -> Figure:
+    time = signals.time
+    error = np.where(signals.following, signals.force - signals.wanted, np.nan)
+    panels = [
+        Panel(
+            "normal force, N", [Curve("true", time, signals.force), Curve("asked", time, signals.wanted, "reference")]
+        ),
+        Panel("force error on the path, N", [Curve("", time, error)]),
+        Panel("distance from the path, mm", [Curve("", time, 1e3 * signals.beside)]),
+        Panel("largest torque, % of its limit", [Curve("", time, 100.0 * signals.limit.max(axis=1))]),
+    ]
+    title = " · ".join(part for part in (case.case, case.robot, case.controller, case.variant) if part)
+    return time_series(panels, title=title, phases=log.phases())
+
+
+def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: Signals) -> Figure | None:
+    plant = experiment.plant.inner if isinstance(experiment.plant, ImperfectPlant) else experiment.plant
+    on_path = np.flatnonzero(signals.following)
+    if not isinstance(plant, MujocoPlant) or on_path.size < 2:
+        return None
+    moments = [int(on_path[round(share * (on_path.size - 1))]) for share in _SHARES]
+    q, frame = log["truth/q"], case.tool.frame
+    place = log[f"truth/{frame}/position"]
+    middle = 0.5 * (place[on_path].max(axis=0) + place[on_path].min(axis=0))
+    camera = Camera(
+        look_at=(float(0.75 * middle[0]), float(0.75 * middle[1]), float(middle[2]) + 0.2),
+        distance=1.5,
+        azimuth=128.0,
+        elevation=-18.0,
+    )
+    pictures = render(
+        plant.model, [_snapshot(log, q, frame, on_path, moment) for moment in moments], camera, width=520, height=420
+    )
+    if pictures is None:
+        return None
+    made = style.figure(2.6 * len(moments), 2.5, f"{case.case}, {case.robot}, {case.controller}")
+    for ax, picture, moment in zip(made.subplots(1, len(moments), squeeze=False)[0], pictures, moments, strict=True):
+        ax.imshow(picture.astype(np.uint8))
+        ax.set_axis_off()
+        title = f"t = {signals.time[moment]:.2f} s, {signals.force[moment]:.1f} of {signals.wanted[moment]:.1f} N"
+        ax.set_title(title, fontsize=style.NORMAL, color=style.INK)
+    return made
+
+
+def _snapshot(log: Log, q: Array, frame: str, on_path: npt.NDArray[np.intp], moment: int) -> Snapshot:
+    position = log[f"truth/{frame}/position"]
+    first = int(on_path[0])
+    drawn = position[first : moment + 1 : 10]
+    wanted = log[f"reference/{frame}/position"][first : int(on_path[-1]) : 10]
+    force = log[f"truth/{frame}/wrench"][moment, :3]
+    arrows = (Arrow(position[moment], _METRES_PER_NEWTON * force, _FORCE),) if force.any() else ()
+    paths = (Path3(wanted, _REFERENCE, 0.002), Path3(drawn, _TRACE, 0.003)) if len(drawn) > 1 else ()
+    return Snapshot(q[moment], paths, arrows)

@@ -1,0 +1,199 @@
+"""Robot, believed surface and path of a task."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from pathlib import Path as FilePath
+
+import numpy as np
+
+from pliant.errors import ConfigError
+from pliant.references.postures.ik_mink import MinkSolver
+from pliant.references.postures.inverse_kinematics import Target, joint_box
+from pliant.references.postures.posture import freedom
+from pliant.references.toolpaths.files import read_path
+from pliant.references.toolpaths.patterns import PATTERNS
+from pliant.references.toolpaths.pressing import ForceProfile
+from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, resting, through
+from pliant.robot import Robot, Tool
+from pliant.spatial import Array, exp3
+from pliant.surfaces import SurfaceGeometry
+from pliant.tasks.parts import Pose
+from pliant.tasks.task import TaskParts
+
+_FORWARD = (0.35, 0.42, 0.49, 0.56, 0.63)  # of the arm's length: where a place for a part is looked for
+_HEIGHT = (0.05, 0.2, 0.35)  # of that length, over the base
+_AROUND = (-0.05, 0.0, 0.05)  # m, before and behind a place, where the tool must do as well
+_MILLIMETRES = 5.0  # m; a path as long as that was written in another unit
+
+
+def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
+    """The robot with its tool. Args: unknown_mass: kg of the real tool beside the known ones.
+
+    Raises:
+        PliantError: a robot, joint or frame that there is not.
+    """
+    tool = task.tool
+    made = Tool(tool.length, tool.mass + unknown_mass, tool.radius, tool.parent, tool.frame)
+    locked = None if task.locked is None else {joint: math.radians(angle) for joint, angle in task.locked.items()}
+    return Robot.load(source, locked=locked, tool=made).with_contact(tool.frame, tool.radius)
+
+
+def believed_surface(task: TaskParts, robot: Robot) -> SurfaceGeometry:
+    """Where the controller believes the surface."""
+    return task.surface.geometry(default_pose(task, robot))
+
+
+def default_pose(task: TaskParts, robot: Robot) -> Pose:
+    """A place in front of the robot, turned by `surface.tilt` about the world's y axis: there the tool, upright on the
+    surface, is farthest from joint limits and singularities, on the branch of home.
+
+    A cylinder lies across, along the y axis; its top, like a sphere's, is where a plane would be.
+    """
+    tilt = math.radians(task.surface.tilt)
+    normal = np.array([math.sin(tilt), 0.0, math.cos(tilt)])
+    curvature = 0.0 if task.surface.shape == "plane" else (-1.0 if task.surface.hollow else 1.0) / task.surface.radius
+    at = good_place(robot, task.tool.frame, task.tool.parent, normal, curvature)
+    if task.surface.shape == "plane":
+        return Pose(xyz=_three(at), rpy=(0.0, task.surface.tilt, 0.0))
+    side = -1.0 if task.surface.hollow else 1.0
+    middle = at - side * task.surface.radius * normal
+    turned = (90.0, 0.0, 0.0) if task.surface.shape == "cylinder" else (0.0, task.surface.tilt, 0.0)
+    return Pose(xyz=_three(middle), rpy=turned)
+
+
+def good_place(robot: Robot, frame: str, flange: str, normal: Array, curvature: float) -> Array:
+    """(3,) m before the robot where a frame whose z axis goes into a surface has most freedom, and around it too.
+
+    Args:
+        robot: that is to reach it.
+        frame: of the tool.
+        flange: end of the arm.
+        normal: (3,) of the surface at the place.
+        curvature: 1/m, by which the normal turns before and behind the place; positive where the solid is convex.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    home = robot.placement(robot.home, frame)[0]
+    ahead = math.atan2(float(home[1]), float(home[0])) if math.hypot(home[0], home[1]) > 0.05 else 0.0
+    length = arm_length(robot, flange)
+    solver, box = MinkSolver(robot, frame), joint_box(robot)
+    direction = np.array([math.cos(ahead), math.sin(ahead), 0.0])
+
+    def free(at: Array, step: float) -> float:
+        turned = math.cos(curvature * step) * normal + math.sin(curvature * step) * direction
+        n = turned / np.linalg.norm(turned)
+        x = _heading(robot, frame, n)
+        q, target = robot.home, Target(at + step * direction, np.column_stack([x, np.cross(-n, x), -n]))
+        for _ in range(3):  # the prior moves along, so that the posture cost stops pulling
+            q = solver.solve(q, q, box, target)
+        distance, angle = solver.shortfall(q, target)
+        return freedom(solver, box, q) if distance < 1e-3 and angle < 1e-2 else 0.0
+
+    best, most = None, 0.0
+    for share, height in itertools.product(_FORWARD, _HEIGHT):
+        at = length * (share * direction + np.array([0.0, 0.0, height]))
+        least = min(free(at, step) for step in _AROUND)
+        if least > most:
+            best, most = at, least
+    if best is None:
+        raise ConfigError(
+            f"no place was found before robot {robot.name!r} where its tool can stand upright on the surface: give one"
+            " by surface.pose, for example surface.pose.xyz=[0.5,0,0.1]"
+        )
+    return best
+
+
+def arm_length(robot: Robot, flange: str) -> float:
+    """m: sum of the distances from joint to joint up to the flange, the first one along the base left out."""
+    joint = int(robot.model.frames[robot.frame_id(flange)].parentJoint)
+    length = float(np.linalg.norm(robot.model.frames[robot.frame_id(flange)].placement.translation))
+    while int(robot.model.parents[joint]) > 0:
+        length += float(np.linalg.norm(robot.model.jointPlacements[joint].translation))
+        joint = int(robot.model.parents[joint])
+    return length
+
+
+def toolpath_of(task: TaskParts, surface: SurfaceGeometry, robot: Robot) -> Toolpath:
+    """The path on the believed surface, oriented and timed.
+
+    Raises:
+        ConfigError: a file that cannot be read or leaves the surface, or a path without length.
+    """
+    path = task.path
+    motion = PathMotion(
+        path.speed, path.acceleration, math.radians(path.tool_tilt), math.radians(path.tool_lean), task.tool.radius
+    )
+    near = surface.near(surface.top() if path.at is None else np.array(path.at))
+    along, across = _axes(task, surface, near.point, near.normal)
+    heading = _heading(robot, task.tool.frame, near.normal)
+    if path.pattern == "hold":
+        return resting(near.point, near.normal, path.time, motion, heading)
+    if path.file is None:
+        uv = PATTERNS[path.pattern](path.size, path.spacing, path.turns)
+        return on_chart(surface, near.point, along, uv, motion, heading)
+    return _from_file(task, surface, near.point, (along, across, near.normal), motion, heading)
+
+
+def force_of(task: TaskParts) -> ForceProfile:
+    """How hard the tool presses along the path."""
+    knots, values = task.force.knots()
+    return ForceProfile(knots, values, task.force.unit)
+
+
+def _from_file(
+    task: TaskParts,
+    surface: SurfaceGeometry,
+    origin: Array,
+    axes: tuple[Array, Array, Array],
+    motion: PathMotion,
+    heading: Array,
+) -> Toolpath:
+    """A file's path. Its axes are u and v on the surface and the normal at the origin."""
+    path = task.path
+    assert path.file is not None
+    file = FilePath(path.file)
+    found = read_path(file, path.unit)
+    size = float(np.ptp(found.points, axis=0).max())
+    if size > _MILLIMETRES:
+        raise ConfigError(f"path file {file} is {size:.4g} m long: is it in millimetres? then set path.unit = 'mm'")
+    world = origin + found.points @ np.stack(axes)
+    if found.flat:
+        world, _ = surface.chart(origin, axes[0], found.points[:, :2])
+    for point, line in zip(world, found.lines, strict=True):
+        off = abs(surface.near(point).distance)
+        if off > path.off_surface:
+            raise ConfigError(
+                f"path file {file}, line {line}: the point is {1e3 * off:.1f} mm off the believed surface, more than"
+                f" path.off_surface = {1e3 * path.off_surface:g} mm: mend the file, path.at or surface.pose"
+            )
+    speed = found.speed
+    if speed is None and found.time is not None:
+        way = np.linalg.norm(np.diff(world, axis=0), axis=1) / np.diff(found.time)
+        speed = np.maximum(np.concatenate([way[:1], way]), 1e-3)
+    return through(surface, world, speed, found.force, motion, heading)
+
+
+def _axes(task: TaskParts, surface: SurfaceGeometry, place: Array, normal: Array) -> tuple[Array, Array]:
+    """u and v (3,) at a place: along a cylinder's axis or a plane's x axis, turned by `path.direction`."""
+    first = surface.rotation[:, 2 if task.surface.shape == "cylinder" else 0]
+    if task.surface.shape == "sphere" and abs(float(first @ normal)) > 0.95:
+        first = surface.rotation[:, 1]
+    along = exp3(math.radians(task.path.direction) * normal) @ surface.tangent(place, first)
+    return along, np.cross(normal, along)
+
+
+def _heading(robot: Robot, frame: str, normal: Array) -> Array:
+    """(3,) where the tool's x axis goes: as at home, after its z axis was turned the shortest way into the surface."""
+    R = robot.placement(robot.home, frame)[1]
+    axis = np.cross(R[:, 2], -normal)
+    sine, cosine = float(np.linalg.norm(axis)), float(R[:, 2] @ -normal)
+    if sine < 1e-6:
+        return R[:, 0]
+    return exp3(math.atan2(sine, cosine) / sine * axis) @ R[:, 0]
+
+
+def _three(values: Array) -> tuple[float, float, float]:
+    return float(values[0]), float(values[1]), float(values[2])

@@ -1,0 +1,104 @@
+"""A task file as a study: its variants are the cases, its `[sweep]` the rows."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pliant.configuration import merged, overlaid
+from pliant.errors import ConfigError
+from pliant.experiments.base import Experiment, Study
+from pliant.studies.task import draw
+from pliant.studies.task.build import build, planned
+from pliant.studies.task.config import TaskCase, case_of
+from pliant.studies.task.measure import WORST, Signals, check_accept, measured, signals_of
+from pliant.studies.task.world import true_surface
+from pliant.tasks.files import TaskFile, checked, read_task
+from pliant.tasks.task import Task
+from pliant.telemetry.log import Log
+from pliant.telemetry.summary import Metric
+
+_SEEDS = 3
+
+
+class TaskStudy(Study[TaskCase]):
+    """Runs of one task.
+
+    Args:
+        name: of the task: its file or its name in the catalogue.
+        cases: name → run; the first is the task itself, the others are its variants.
+    """
+
+    worst = WORST
+
+    def __init__(self, name: str, cases: Mapping[str, TaskCase]) -> None:
+        self.name, self.cases = name, cases
+        first = next(iter(cases.values()))
+        self.title = first.description or "a contact task"
+
+    def runs(self, case: str, seeds: int | None = None) -> Sequence[TaskCase]:
+        """Every combination of the values of `[sweep]`, with each seed."""
+        base = self.case(case)
+        sweep = dict(base.sweep)
+        count = seeds or int(sweep.pop("seeds", _SEEDS))
+        keys = list(sweep)
+        for key, values in sweep.items():
+            if not isinstance(values, list | tuple):
+                raise ConfigError(f"sweep.{key}: a list of values, got {values!r}")
+        found: list[TaskCase] = []
+        for values in itertools.product(*sweep.values()):
+            row = base
+            for key, value in zip(keys, values, strict=True):
+                row = merged(row, _nested(key.split("."), value))
+            label = ", ".join(f"{key} {value}" for key, value in zip(keys, values, strict=True) if key != "controller")
+            row = merged(row, {"variant": label})
+            found += [merged(row, {"seed": base.seed + seed}) for seed in range(count)]
+        return found
+
+    def shows(self, config: TaskCase) -> bool:
+        return config.seed == 0
+
+    def build(self, config: TaskCase) -> Experiment:
+        check_accept(config.accept)
+        return build(config)
+
+    def metrics(self, config: TaskCase, log: Log) -> tuple[Metric, ...]:
+        return measured(self._signals(config, log), config.accept)
+
+    def verdict(self, config: TaskCase, metrics: Sequence[Metric]) -> str | None:
+        if not metrics:
+            return "the run ended before the path began: no contact was found in time"
+        allowed = config.limits.force
+        peak = next(metric.value for metric in metrics if metric.name == "force_peak")
+        if allowed is not None and peak > allowed:
+            return f"the force limit was passed: {peak:.3g} N along the normal, limits.force allows {allowed:g} N"
+        return None
+
+    def figures(self, config: TaskCase, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+        return draw.run_figures(config, experiment, log, self._signals(config, log), folder)
+
+    def _signals(self, config: TaskCase, log: Log) -> Signals:
+        made = planned(config)
+        surface = true_surface(config, made.surface, made.path)
+        return signals_of(log, config.tool.frame, surface.geometry, made.robot.torque_limit)
+
+
+def study_of(name: str) -> TaskStudy:
+    """The study of a task file, or of a task of the catalogue.
+
+    Raises:
+        ConfigError: there is none, or it is no task.
+    """
+    found: TaskFile = read_task(name)
+    tasks: dict[str, Task] = {found.name: found.task}
+    for variant, changes in found.variants.items():
+        if variant in tasks:
+            raise ConfigError(f"{found.path}: a variant cannot have the name of its file, {variant!r}")
+        tasks[variant] = checked(found.path, overlaid(Task, found.task.model_dump(), changes))
+    return TaskStudy(name, {key: case_of(task, key) for key, task in tasks.items()})
+
+
+def _nested(parts: Sequence[str], value: Any) -> dict[str, Any]:
+    return {parts[0]: value if len(parts) == 1 else _nested(parts[1:], value)}

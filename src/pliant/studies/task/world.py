@@ -1,0 +1,100 @@
+"""The world of a task as it really is: a true surface, a true robot, pushes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.configuration import validated
+from pliant.interfaces import Plant
+from pliant.references.toolpaths.toolpath import Toolpath
+from pliant.robot import Robot
+from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, MujocoPlant, Push, Scene
+from pliant.simulation import Surface as Touch
+from pliant.simulation.scene import fixed_part
+from pliant.simulation.seeding import generator
+from pliant.spatial import Array
+from pliant.studies.task.config import TaskCase
+from pliant.studies.task.geometry import robot_of
+from pliant.surfaces import SurfaceGeometry
+from pliant.tasks.draws import Drawn, drawn
+
+SPEED_STOP = 2.0
+"""multiple of the joints' speed limits at which the robot stops and the run counts as failed"""
+
+
+@dataclass(frozen=True)
+class TrueSurface:
+    """The part of one run."""
+
+    geometry: SurfaceGeometry
+    touch: Touch
+
+
+def true_surface(case: TaskCase, believed: SurfaceGeometry, path: Toolpath) -> TrueSurface:
+    """The surface of a run: shifted along the normal and tilted about the first contact, as its seed draws."""
+    truth = case.truth
+    pivot, normal = path.places[0], path.normals[0]
+    axis = generator(case.seed, "truth.axis").standard_normal(3) if truth.axis == "random" else np.array(truth.axis)
+    if truth.axis == "random":
+        axis = axis - normal * float(axis @ normal)
+    axis = axis / np.linalg.norm(axis)
+    shift = _draw(case, "shift", truth.shift) * normal
+    turn = math.radians(_draw(case, "tilt", truth.tilt)) * axis
+    feel = {
+        name: getattr(case.surface, name) if value is None else max(_draw(case, name, value), 0.0)
+        for name, value in (("stiffness", truth.stiffness), ("damping", truth.damping), ("friction", truth.friction))
+    }
+    return TrueSurface(believed.moved(shift, turn, pivot), Touch(**feel))
+
+
+def imperfections_of(case: TaskCase) -> Imperfections:
+    """Of sensors, drives and computation."""
+    wanted = case.truth.imperfections
+    if isinstance(wanted, dict):
+        return validated(Imperfections, wanted)
+    return Imperfections() if wanted == "none" else Imperfections.p3(pid=wanted == "p3")
+
+
+def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array) -> Plant[Any]:
+    """The robot over the part, with its imperfections where there are any."""
+    tool = case.tool.frame
+    imperfections = imperfections_of(case)
+    perfect = imperfections == Imperfections()
+    heavier = _draw(case, "tool_mass", case.truth.tool_mass)
+    physics = MujocoPlant(
+        robot_of(case, case.robot, heavier) if heavier else robot,
+        Scene((fixed_part("part", surface.geometry, surface.touch),), case.simulation.contact),
+        period=case.simulation.period if perfect else case.simulation.physics_step,
+        physics_step=case.simulation.physics_step,
+        start=start,
+        sensors=[ForceSensor(tool)],
+        pushes=_pushes(case),
+        observe=[tool],
+        speed_stop=SPEED_STOP,
+    )
+    if perfect:
+        return physics
+    holding = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), start))
+    return ImperfectPlant(physics, imperfections, seed=case.seed, period=case.simulation.period, holding_torque=holding)
+
+
+def _pushes(case: TaskCase) -> tuple[Push, ...]:
+    found: list[Push] = []
+    rng = generator(case.seed, "pushes")
+    for one in case.disturbance:
+        force = one.push
+        if not isinstance(force, tuple):
+            way = rng.standard_normal(3)
+            x, y, z = (float(entry) for entry in one.push * way / np.linalg.norm(way))  # type: ignore[operator]
+            force = (x, y, z)
+        found.append(Push(one.frame, force, one.start, one.duration))
+    return tuple(found)
+
+
+def _draw(case: TaskCase, name: str, value: Drawn) -> float:
+    return drawn(value, generator(case.seed, f"truth.{name}"))

@@ -1,0 +1,197 @@
+"""The parts of a task. Angles are degrees: they are typed by people."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from pliant.configuration import Config
+from pliant.spatial import Array, rpy
+from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
+from pliant.tasks.draws import Drawn
+
+Vector = tuple[float, float, float]
+
+
+def number(default: Any, unit: str, description: str, **limits: Any) -> Any:
+    """A field with a unit. Args: limits: pydantic's `ge`, `gt`, `le`, `lt`, `min_length`."""
+    return Field(default=default, description=description, json_schema_extra={"unit": unit}, **limits)
+
+
+class Pose(Config):
+    """Where something stands."""
+
+    xyz: Vector = number((0.0, 0.0, 0.0), "m", "position")
+    rpy: Vector = number((0.0, 0.0, 0.0), "deg", "roll, pitch, yaw: about x, then y, then z, each of the fixed axes")
+
+    @property
+    def rotation(self) -> Array:
+        """(3, 3)."""
+        return rpy(*(math.radians(angle) for angle in self.rpy))
+
+
+class Tool(Config):
+    """A rigid tool on the flange whose end is a ball."""
+
+    mass: float = number(0.4, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
+    length: float = number(0.2, "m", "from the flange along its z axis to the middle of the ball", gt=0.0, le=2.0)
+    radius: float = number(0.015, "m", "of the ball that touches", gt=0.0, le=0.5)
+    frame: str = Field(default="tool", min_length=1, description="name of the contact frame")
+    parent: str = Field(default="flange", min_length=1, description="frame that carries the tool")
+
+
+class Surface(Config):
+    """The part, as the controller believes it. In its own axes: z is a plane's normal and a cylinder's axis."""
+
+    shape: Literal["plane", "cylinder", "sphere"] = Field(default="plane", description="plane, cylinder or sphere")
+    pose: Pose | None = Field(
+        default=None, description="of its own frame in the world; none: in front of the robot, where it reaches well"
+    )
+    tilt: float = number(0.0, "deg", "turned about the world's y axis where no pose is given", ge=-180.0, le=180.0)
+    radius: float = number(0.15, "m", "of a cylinder or a sphere", gt=0.0, le=10.0)
+    hollow: bool = Field(default=False, description="of a cylinder or a sphere: the inner wall")
+    stiffness: float = number(2e4, "N/m", "of the contact", gt=0.0, le=1e7)
+    damping: float = number(1e2, "N·s/m", "of the contact", ge=0.0, le=1e5)
+    friction: float = number(0.25, "1", "Coulomb coefficient", ge=0.0, le=5.0)
+
+    def geometry(self, default: Pose) -> SurfaceGeometry:
+        """Where it is. Args: default: its pose where none is given."""
+        pose = self.pose or default
+        place = np.array(pose.xyz)
+        if self.shape == "plane":
+            return PlaneSurface(place, pose.rotation)
+        kind = CylinderSurface if self.shape == "cylinder" else SphereSurface
+        return kind(place, pose.rotation, self.radius, self.hollow)
+
+
+class Path(Config):
+    """What the tool draws on the surface."""
+
+    pattern: Literal["raster", "spiral", "circle", "line", "square", "lemniscate", "hold", "file"] = Field(
+        default="raster", description="raster, spiral, circle, line, square, lemniscate, hold or file"
+    )
+    size: tuple[float, float] = number((0.12, 0.08), "m", "along and across, measured on the surface")
+    spacing: float = number(0.02, "m", "largest distance of two lines of a raster or spiral", gt=0.0, le=1.0)
+    turns: float = number(1.0, "1", "how often a circle, square or lemniscate is drawn", gt=0.0, le=1000.0)
+    time: float = number(5.0, "s", "how long the pattern `hold` stays", gt=0.0, le=3600.0)
+    speed: float = number(0.05, "m/s", "on the surface", gt=0.0, le=5.0)
+    acceleration: float = number(0.5, "m/s²", "of starts, stops and bends: corners are rounded to keep it", gt=0.0)
+    file: str | None = Field(
+        default=None, description="CSV with x, y [, z, time, speed, force], or APT; beside the task"
+    )
+    unit: Literal["m", "mm", "cm", "in"] = Field(default="m", description="of lengths in the file that name none")
+    at: Vector | None = number(
+        None, "m", "a place near the middle of the pattern, world axes; none: the top of the surface"
+    )
+    direction: float = number(0.0, "deg", "of the path's first axis, turned about the normal", ge=-360.0, le=360.0)
+    tool_tilt: float = number(0.0, "deg", "of the tool from the normal, in the direction of travel", ge=-45.0, le=45.0)
+    tool_lean: float = number(0.0, "deg", "of the tool from the normal, to the left", ge=-45.0, le=45.0)
+    spins: bool = Field(
+        default=False, description="the tool may turn about its own axis as suits the arm; else it keeps its heading"
+    )
+    off_surface: float = number(
+        0.02, "m", "a point of a file that is farther from the believed surface is refused", gt=0.0, le=1.0
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Path:
+        if (self.pattern == "file") != (self.file is not None):
+            raise ValueError("path.file and path.pattern = 'file' go together")
+        return self
+
+
+class Force(Config):
+    """How hard the tool presses along the normal."""
+
+    normal: float | tuple[tuple[float, float], ...] = number(
+        ((0.0, 5.0), (0.1, 20.0), (1.0, 20.0)),
+        "N",
+        "one number, or pairs of (share of the path or time, force) that are joined by straight lines",
+    )
+    unit: Literal["share", "s"] = Field(default="share", description="of the first number of each pair")
+    along: Literal["believed"] = Field(default="believed", description="whose normal the force follows")
+
+    @model_validator(mode="after")
+    def _presses(self) -> Force:
+        knots, values = self.knots()
+        if any(late <= early for early, late in pairwise(knots)):
+            raise ValueError(f"the first numbers of force.normal must increase, got {list(knots)}")
+        if min(values) < 0.0:
+            raise ValueError(f"a force on a surface pushes: force.normal must not be negative, got {min(values):g} N")
+        return self
+
+    def knots(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Shares (or s) and N; one number is a constant."""
+        if isinstance(self.normal, float | int):
+            return (0.0,), (float(self.normal),)
+        return tuple(pair[0] for pair in self.normal), tuple(pair[1] for pair in self.normal)
+
+    @property
+    def largest(self) -> float:
+        """N."""
+        return max(self.knots()[1])
+
+
+class Phases(Config):
+    """What comes before and after the path."""
+
+    stand_off: float = number(0.05, "m", "over the surface, where the run starts", gt=0.0, le=1.0)
+    approach_speed: float = number(0.05, "m/s", "down to the surface, until contact is felt", gt=0.0, le=1.0)
+    search: float = number(0.03, "m", "below the believed surface to which contact is looked for", gt=0.0, le=0.5)
+    press: float = number(0.5, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
+    leave: float = number(0.5, "s", "in which the tool is lifted by stand_off at the end; 0: never", ge=0.0, le=60.0)
+
+
+class Timing(Config):
+    """How late readings and commands are, as the controller believes; whether it is so says `truth.imperfections`."""
+
+    sensing_delay: float = number(1e-3, "s", "age of a reading", ge=0.0, le=0.1)
+    computation_delay: float = number(5e-3, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
+
+
+class Limits(Config):
+    """What must not be passed."""
+
+    force: float | None = number(None, "N", "a run with more than that is a failure; none: no limit", gt=0.0)
+
+
+class Truth(Config):
+    """How the world differs from what the controller believes. A simulation reads it, nothing else."""
+
+    shift: Drawn = number(0.0, "m", "of the surface along its normal, outwards")
+    tilt: Drawn = number(0.0, "deg", "of the surface about `axis`, at the first contact")
+    axis: Literal["random"] | Vector = Field(
+        default="random", description="of the tilt: a direction in the world, or a random one across the normal"
+    )
+    stiffness: Drawn | None = number(None, "N/m", "none: as believed")
+    damping: Drawn | None = number(None, "N·s/m", "none: as believed")
+    friction: Drawn | None = number(None, "1", "none: as believed")
+    tool_mass: Drawn = number(0.0, "kg", "of the tool beside what is known")
+    link_masses: float = number(0.0, "1", "share by which each link's mass is off, drawn within ±", ge=0.0, lt=1.0)
+    imperfections: Literal["none", "p3", "p3-without-torque-loop"] | dict[str, Any] = Field(
+        default="none",
+        description="of sensors, drives and computation: none; p3: those of [FFMPC] sec. VI-B; or a table of values",
+    )
+
+
+class Disturbance(Config):
+    """A push from outside."""
+
+    push: float | Vector = number(15.0, "N", "a force in the world's axes, or its size in a random direction")
+    frame: str = Field(default="elbow", description="that is pushed")
+    start: float = number(4.0, "s", "of the push", ge=0.0)
+    duration: float = number(0.4, "s", "of the push", gt=0.0)
+
+
+class Simulation(Config):
+    """How the world is computed."""
+
+    period: float = number(1e-3, "s", "of control", ge=1e-4, le=0.02)
+    physics_step: float = number(5e-4, "s", "of the simulation", ge=1e-5, le=2e-3)
+    contact: Literal["mujoco", "explicit"] = Field(
+        default="mujoco", description="law of contacts: MuJoCo's soft constraints, or a force law with stiction"
+    )

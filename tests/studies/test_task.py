@@ -1,0 +1,109 @@
+"""Tasks from files, run: force on curved surfaces, what the metrics say, the commands as a user calls them."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from pliant.cli.app import app
+from pliant.configuration import merged
+from pliant.experiments.runner import run_case
+from pliant.studies.task.measure import MEASURES, Signals, measured
+from pliant.studies.task.study import study_of
+
+SHORT = {"path": {"pattern": "line", "size": (0.06, 0.03), "speed": 0.06}, "force": {"normal": 20.0}}
+CLI = CliRunner()
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(("name", "robot"), [("wipe-sphere", "panda"), ("wipe-cylinder", "ur5e")])
+def test_a_force_on_a_curved_surface_that_is_not_where_it_is_believed(name: str, robot: str) -> None:
+    study = study_of(name)
+    result = run_case(study, merged(study.case(name), {**SHORT, "robot": robot, "seed": 1}))
+    assert result.failure is None
+    found = {metric.name: metric.value for metric in result.metrics}
+    assert found["force_error"] <= 0.9
+    assert found["contact_lost"] == 0.0
+    assert found["force_peak"] <= 40.0
+
+
+def signals(**changes: object) -> Signals:
+    values = {
+        "time": np.arange(10) * 0.1,
+        "force": np.array([0.0, 0.0, 4.0, 9.0, 10.0, 12.0, 10.0, 0.0, 10.0, 3.0]),
+        "wanted": np.full(10, 10.0),
+        "beside": np.linspace(0.0, 0.009, 10),
+        "following": np.arange(10) >= 4,
+        "limit": np.linspace(0.0, 0.5, 20).reshape(10, 2),
+    }
+    return Signals(**(values | changes))  # type: ignore[arg-type]
+
+
+def test_metrics_on_ten_samples() -> None:
+    found = {metric.name: metric for metric in measured(signals(), {"force_error": 2.0})}
+    assert found["force_error"].value == pytest.approx((0 + 2 + 0 + 10 + 0 + 7) / 6)
+    assert found["force_error"].met is False
+    assert found["force_error_max"].value == 10.0
+    assert found["force_peak"].value == 12.0
+    assert found["landing_peak"].value == 9.0  # before 0.2 s after the third sample
+    assert found["contact_lost"].value == pytest.approx(100.0 / 6)
+    assert found["path_error"].value == pytest.approx(1e3 * np.linspace(0.0, 0.009, 10)[4:].mean())
+    assert found["path_error_max"].value == pytest.approx(9.0)
+    assert found["torque_share"].value == pytest.approx(50.0)
+    assert set(found) == set(MEASURES)
+    assert measured(signals(following=np.zeros(10, dtype=bool)), {}) == ()
+
+
+def test_every_row_of_a_sweep_says_what_it_changes(tmp_path: Path) -> None:
+    path = tmp_path / "t.toml"
+    path.write_text(
+        '[sweep]\n"surface.stiffness" = [3e3, 1e5]\ncontroller = ["haptic", "stack"]\nseeds = 2\n', encoding="utf-8"
+    )
+    runs = study_of(str(path)).runs("t")
+    assert len(runs) == 8
+    wanted = itertools.product(("haptic", "stack"), (3e3, 1e5), (0, 1))
+    assert {(run.controller, run.surface.stiffness, run.seed) for run in runs} == set(wanted)
+    assert {run.variant for run in runs} == {"surface.stiffness 3000.0", "surface.stiffness 100000.0"}
+
+
+def test_a_user_begins_a_task_runs_it_and_compares_controllers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for pattern in ("raster", "file", "hold"):
+        done = CLI.invoke(app, ["new", "task", pattern, "-o", f"{pattern}.toml"])
+        assert done.exit_code == 0, done.output
+        study_of(f"{pattern}.toml")
+    assert CLI.invoke(app, ["new", "task", "raster", "-o", "raster.toml"]).exit_code == 2  # nothing is overwritten
+    sets = ["--set", "path.time=0.4", "--set", "phases.stand_off=0.01", "--set", "phases.press=0.2"]
+    done = CLI.invoke(
+        app, ["compare", "hold.toml", "--controllers", "offset-free-mpc,haptic", "--seeds", "1", "--out", "o", *sets]
+    )
+    assert done.exit_code == 0, done.output
+    cases = json.loads((tmp_path / "o" / "summary.json").read_text())["cases"]
+    assert [case["controller"] for case in cases] == ["offset-free-mpc", "haptic"]
+    assert all(case["failed"] == 0 for case in cases)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "wype"], "no study or task named 'wype'"),
+        (["new", "task", "zigzag"], "no pattern 'zigzag'"),
+        (["new", "robot", "x"], "no template 'robot'"),
+        (["compare", "wipe", "--controllers", ","], "at least one name"),
+        (["compare", "wipe", "--controllers", "nobody"], "nobody"),
+        (["run", "wipe", "--set", "accept.beauty=1"], "accept: there is no metric 'beauty'"),
+        (["run", "wipe", "--set", "surface.pose.xyz=[3,0,0]"], "cannot reach"),
+    ],
+)
+def test_bad_input_is_a_sentence(
+    arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = CLI.invoke(app, arguments)
+    assert done.exit_code == 2, done.output
+    assert message in done.output
