@@ -18,8 +18,7 @@ struct AccountConfig {
   double ceiling;      // J, largest balance
   double savings;      // J, most of what is beyond it that is put aside
   double spend;        // share of the balance beyond the reserve that one step may spend
-  double damping;      // largest force that repays a debt, as a multiple of the slope times the step
-  double trust;        // share per period with which it is learned how right the expected steps are
+  double damping;      // largest force that repays a debt, as a multiple of K_0 times the step
   double tolerance;    // J, debt that does not weaken the axis
   double speed[2];     // m/s, rad/s: the tolerance is at least K_0/2 (speed period)^2
   double trickle;      // W that an overdrawn axis may always let out
@@ -36,10 +35,6 @@ struct AccountState {
   double step_last;  // in the one before
   double target;     // by which the target moved the error in the last period
   double peak;       // largest recent step
-  double expected;   // step that was expected for the period that follows
-  double right;      // recent mean of the expected step times the real one
-  double size;       // of its absolute value
-  double slope;      // largest recent slope of the profile over a step, at least K_0, N/m or N m/rad
 };
 
 // What moved the error in the last period.
@@ -84,8 +79,6 @@ inline void book(const AccountConfig& c, Shape shape, const Axis& p, AccountStat
   a.step = m.robot - m.from + smaller_of_a_kind(target, a.target);
   a.target = target;
   a.stored = stored;
-  a.right += c.trust * (a.expected * a.step - a.right);
-  a.size += c.trust * (std::fabs(a.expected * a.step) - a.size);
 }
 
 // What the profile stores more after a change of the tuning is taken from the balance.
@@ -94,12 +87,9 @@ inline void restate(const AccountConfig& c, AccountState& a, double stored) {
   a.stored = stored;
 }
 
-constexpr double kSmallStep = 1e-6;  // m or rad: below it the difference of energies is rounding
-
 // What is left to spend on a step d: the balance less what a reversal would cost.
 struct Budget {
   double step;     // that is expected
-  double slope;    // of the profile over it there and back, N/m or N m/rad
   double gain;     // J that the profile stores more after it
   double balance;  // J, beyond the reserve; negative: below it
 };
@@ -107,22 +97,18 @@ struct Budget {
 inline Budget budget(Shape shape, const Axis& p, const AccountState& a, double error) {
   const double size = std::max(std::fabs(a.step), std::fabs(a.step_last));
   const double d = std::min(std::max(2.0 * a.step - a.step_last, -size), size);
-  if (d == 0.0) return {0.0, 0.0, 0.0, a.balance};
+  if (d == 0.0) return {0.0, 0.0, a.balance};
   const double gain = energy(shape, p, error + d) - a.stored;
   const double reversal = gain + energy(shape, p, error - d) - a.stored;
-  const double slope = std::fabs(d) > kSmallStep ? reversal / (d * d) : 0.0;
-  return {d, slope, gain, a.balance - std::max(reversal, 0.0)};
+  return {d, gain, a.balance - std::max(reversal, 0.0)};
 }
 
 inline double clamped(double x, double bound) { return std::min(std::max(x, -bound), bound); }
 
 // The force nearest to the wanted one that the account allows.
 inline double allowed_force(const AccountConfig& c, const Axis& p, AccountState& a, const Budget& b, double h, bool rotates) {
-  a.expected = b.step;
-  a.slope = std::max(std::max(b.slope, p.stiffness), a.slope * c.peak_keep);
   if (b.step != 0.0) {
-    const double trust = a.size > 0.0 ? std::max(a.right / a.size, 0.0) : 1.0;
-    const double repay = std::min(std::max(-b.balance, 0.0), trust * c.damping * a.slope * b.step * b.step);
+    const double repay = std::min(std::max(-b.balance, 0.0), c.damping * p.stiffness * b.step * b.step);
     const double need = b.gain - c.spend * std::max(b.balance, 0.0) + repay;
     if (h * b.step < need) h = need / b.step;
     h = clamped(h, p.force_max);

@@ -25,41 +25,35 @@ class AccountSettings:
 
     deposit: float = 0.5
     """share that is kept of an income beyond the debt"""
-    ceiling: float = 0.004
+    ceiling: float = 0.01
     """J, largest balance: what a past that dissipated can be drawn on later"""
     savings: float = 0.3
     """J, most of what is beyond the ceiling that is put aside: it pays for what comes from outside, changes of the
     tuning and torque that was not sent, never for the axis' own force"""
-    spend: float = 0.15
+    spend: float = 0.25
     """share of the balance, beyond the cost of a reversal, that one period may spend"""
-    damping: float = 3.0
-    """largest force that repays a debt, as a multiple of the step of a period times the largest recent slope of the
-    profile over a step: a knee costs by its own slope, not by K_0"""
-    trust: float = 0.125
-    """share per period with which it is learned how right the expected steps are: debts are repaid by as much, for
-    motions that turn within a few periods would take from a force that repays"""
+    damping: float = 1.5
+    """largest force that repays a debt, as a multiple of K_0 times the step of a period"""
     tolerance: float = 0.005
     """J of debt that does not weaken an axis; at least ½ K_0 (T_s · speed)², what one sample may leak"""
     speed: float = 1.0
     """m/s"""
     speed_angular: float = 2.0
     """rad/s"""
-    trickle: float = 0.004
+    trickle: float = 0.02
     """W that an overdrawn axis may always let out, so that it never goes quite limp"""
     peak_time: float = 0.1
-    """s for which the largest recent step and slope count as what may come next"""
+    """s for which the largest recent step counts as what may come next"""
     forgiveness_time: float = 0.5
     """s over which debt beyond the tolerance is written off"""
 
     def numbers(self, period: float) -> Array:
-        """(12,) as the compiled core takes them, for a period in s."""
+        """(11,) as the compiled core takes them, for a period in s."""
         rates = (math.exp(-period / self.peak_time), -math.expm1(-period / self.forgiveness_time))
-        levels = (self.deposit, self.ceiling, self.savings, self.spend, self.damping, self.trust, self.tolerance)
+        levels = (self.deposit, self.ceiling, self.savings, self.spend, self.damping, self.tolerance)
         return np.array([*levels, self.speed, self.speed_angular, self.trickle, *rates])
 
 
-SMALL_STEP = 1e-6
-"""m or rad: below it the difference of energies is rounding"""
 ACCOUNT = AccountSettings()
 """the default"""
 
@@ -84,14 +78,6 @@ class AccountState:
     """by which the target moved the error in the last period, m or rad"""
     peak: Array
     """largest recent step, m or rad"""
-    expected: Array
-    """step that was expected for the period that follows, m or rad"""
-    right: Array
-    """recent mean of the expected step times the real one"""
-    size: Array
-    """recent mean of its absolute value"""
-    slope: Array
-    """largest recent slope of the profile over a step, N/m or N·m/rad"""
 
 
 @dataclass(frozen=True)
@@ -117,7 +103,7 @@ class Account:
     def init(self, profile: ForceProfile, error: Array) -> AccountState:
         """An empty account at an error (k,), m or rad."""
         zero = np.zeros_like(error)
-        return AccountState(profile, zero, zero, profile.energy(error), *(zero,) * 8)
+        return AccountState(profile, zero, zero, profile.energy(error), zero, zero, zero, zero)
 
     def book(self, state: AccountState, last: Array, force: Array, error: Array, motion: Motion) -> AccountState:
         """Books a period in which the error went from `last` to `error` (k,) and h = `force` (k,) was asked for.
@@ -132,10 +118,7 @@ class Account:
         state = self._add(state, own - (between - state.stored) + supplied)
         smooth = np.where(np.abs(target) < np.abs(state.target), target, state.target)
         step = motion.robot - last + np.where(target * state.target > 0.0, smooth, 0.0)
-        hit, trust = state.expected * step, self.settings.trust
-        right, size = state.right + trust * (hit - state.right), state.size + trust * (np.abs(hit) - state.size)
-        moved = replace(state, stored=stored, step=step, step_last=state.step, target=target)
-        return replace(moved, right=right, size=size)
+        return replace(state, stored=stored, step=step, step_last=state.step, target=target)
 
     def restate(self, state: AccountState, profile: ForceProfile, error: Array) -> AccountState:
         """A change of the tuning: what is stored more is taken from the balance. Args: error (k,) m or rad."""
@@ -150,12 +133,7 @@ class Account:
         gain = profile.energy(error + d) - state.stored
         reversal = gain + profile.energy(error - d) - state.stored
         balance = state.balance - np.maximum(reversal, 0.0)
-        faded = math.exp(-self.period / settings.peak_time)
-        over = np.where(np.abs(d) > SMALL_STEP, reversal, 0.0) / np.where(np.abs(d) > SMALL_STEP, d**2, 1.0)
-        slope = np.maximum(np.maximum(over, profile.stiffness), state.slope * faded)
-        known = state.size > 0.0
-        trust = np.where(known, np.maximum(state.right, 0.0) / np.where(known, state.size, 1.0), 1.0)
-        repay = np.minimum(np.maximum(-balance, 0.0), trust * settings.damping * slope * d**2)
+        repay = np.minimum(np.maximum(-balance, 0.0), settings.damping * profile.stiffness * d**2)
         need = gain - settings.spend * np.maximum(balance, 0.0) + repay
         least = need / np.where(d == 0.0, 1.0, d)
         force = np.where((d != 0.0) & (wanted * d < need), least, wanted)
@@ -164,11 +142,11 @@ class Account:
         forgiven = -math.expm1(-self.period / settings.forgiveness_time)
         overdraft = np.maximum(-state.stored - tolerance - state.balance, 0.0)
         state = replace(state, balance=state.balance + forgiven * overdraft)
-        peak = np.maximum(np.abs(state.step), state.peak * faded)
+        peak = np.maximum(np.abs(state.step), state.peak * math.exp(-self.period / settings.peak_time))
         left = np.maximum(0.5 * (state.stored + state.balance + tolerance), settings.trickle * self.period)
         bound = left / np.where(peak > 0.0, peak, 1.0)
         bound = np.where((state.balance < 0.0) & (peak > 0.0), bound, np.inf)
-        return np.clip(force, -bound, bound), replace(state, peak=peak, slope=slope, expected=d)
+        return np.clip(force, -bound, bound), replace(state, peak=peak)
 
     def _add(self, state: AccountState, income: Array) -> AccountState:
         """An income pays the debt first; of the rest a share is kept, and what is beyond the ceiling put aside."""
