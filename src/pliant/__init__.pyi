@@ -29,6 +29,8 @@ from pliant.simulation import Surface as Surface
 from pliant.simulation import floor as floor
 from pliant.simulation import table as table
 from pliant.simulation import wall as wall
+from pliant.tasks import Task as Task
+from pliant.tasks import load_task as load_task
 from pliant.telemetry.log import Log as Log
 from pliant.telemetry.summary import Metric as Metric
 from pliant.wiring.registry import find_controller as find_controller
