@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import sys
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar, get_args, get_origin
+from typing import Any, TypeVar, cast, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
 
-from pliant.errors import ConfigError, options
+from pliant.errors import ConfigError, OutputError, options
+from pliant.files import read_file
+
+MOST = 1e12
+"""size of the largest number of a configuration, in whatever unit: beyond it sums and products stop making sense"""
 
 
 class Config(BaseModel):
-    """Frozen values with a meaning: unknown keys are errors, defaults are checked too, every number is finite.
+    """Frozen values with a meaning: unknown keys are errors, defaults are checked too, every number is finite
+    and at most `MOST` in size.
 
     A field says what it means in `description` and its unit, and where it helps a sensible range, in
     `json_schema_extra={"unit": ..., "minimum": ..., "maximum": ...}`: help texts and sliders are made from them.
@@ -21,25 +27,56 @@ class Config(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
 
+    @field_validator("*")
+    @classmethod
+    def _is_of_this_world(cls, value: Any) -> Any:
+        if any(abs(number) > MOST for number in _numbers(value)):
+            raise ValueError(f"a number of a configuration is at most {MOST:g} in size")
+        return value
+
+
+def in_order(value: tuple[float, float]) -> tuple[float, float]:
+    """Validator of a range (least, most). Raises ValueError if it is the other way round."""
+    if value[0] > value[1]:
+        raise ValueError("a range is written [least, most]")
+    return value
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    if isinstance(value, (int, float)):
+        yield value
+    elif isinstance(value, (tuple, list)):
+        for entry in cast("Sequence[Any]", value):
+            yield from _numbers(entry)
+    elif isinstance(value, dict):
+        for entry in cast("dict[Any, Any]", value).values():
+            yield from _numbers(entry)
+
 
 C = TypeVar("C", bound=BaseModel)
+_MOST_DEPTH, _MOST_SHOWN, _MOST_BYTES = 32, 200, 1e6
 
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Reads a TOML file.
 
     Raises:
-        ConfigError: the file does not exist, cannot be read, or is not TOML (duplicate keys included).
+        ConfigError: the file does not exist, cannot be read, is not TOML (duplicate keys included), is deeper than 32
+            tables or larger than 1 MB.
     """
+    if not path.exists():
+        raise ConfigError(f"configuration file {path} does not exist")
     try:
-        with path.open("rb") as file:
-            return tomllib.load(file)
-    except FileNotFoundError:
-        raise ConfigError(f"configuration file {path} does not exist") from None
-    except OSError as error:
-        raise ConfigError(f"configuration file {path} cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        values = tomllib.loads(read_file(path, _MOST_BYTES).decode("utf-8-sig"))
+    except OutputError as error:
+        raise ConfigError(f"configuration file {error}") from None
+    except RecursionError:
+        raise ConfigError(f"configuration file {path} is nested too deeply") from None
+    except ValueError as error:  # TOML's, UTF-8's, or a number with more digits than Python reads
         raise ConfigError(f"configuration file {path} is not TOML: {error}") from error
+    if _is_deep(values):
+        raise ConfigError(f"configuration file {path} is nested more than {_MOST_DEPTH} tables deep")
+    return values
 
 
 def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
@@ -53,7 +90,9 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
         key, equals, value = text.partition("=")
         parts = [part.strip() for part in key.split(".")]
         if not equals or not all(parts):
-            raise ConfigError(f"an override is written key=value, for example plant.period=0.001, got {text!r}")
+            raise ConfigError(f"an override is written key=value, for example plant.period=0.001, got {_shown(text)}")
+        if len(parts) > _MOST_DEPTH:
+            raise ConfigError(f"override {_shown(text)} is nested more than {_MOST_DEPTH} tables deep")
         node = tree
         for part in parts[:-1]:
             node = node.setdefault(part, {})
@@ -118,11 +157,41 @@ def _is_numbers(annotation: Any) -> bool:
 
 def _toml_value(text: str) -> Any:
     try:
-        return tomllib.loads(f"value = {text}")["value"]
+        read = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError:
-        if text.lower() in ("none", "null"):
-            return None
+        return None if text.lower() in ("none", "null") else text
+    except (RecursionError, ValueError) as error:  # ValueError: a number with more digits than Python reads
+        raise ConfigError(f"a value cannot be read: {_shown(text)} ({error})") from None
+    if len(read) > 1:  # a line break and more assignments
         return text
+    if _is_deep(read):
+        raise ConfigError(f"a value is nested more than {_MOST_DEPTH} tables deep: {_shown(text)}")
+    return read["value"]
+
+
+def _is_deep(values: Any) -> bool:
+    level, depth = [values], 0
+    while level:
+        depth += 1
+        if depth > _MOST_DEPTH:
+            return True
+        below: list[Any] = []
+        for value in level:
+            if isinstance(value, dict):
+                below += cast("dict[str, Any]", value).values()
+            elif isinstance(value, list):
+                below += cast("list[Any]", value)
+        level = below
+    return False
+
+
+def _shown(value: Any) -> str:
+    """A value as messages show it: its beginning."""
+    try:
+        text = repr(value)
+    except ValueError:  # a number with more digits than Python writes
+        return f"a number with more than {sys.get_int_max_str_digits()} digits"
+    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
 
 
 def _sentence(kind: type[BaseModel], error: ValidationError) -> str:
@@ -132,8 +201,8 @@ def _sentence(kind: type[BaseModel], error: ValidationError) -> str:
     where = ".".join(str(part) for part in first["loc"])
     got = first.get("input")
     if first["type"] == "extra_forbidden":
-        return f"unknown key {where!r}; {options(_keys_beside(kind, first['loc']), str(first['loc'][-1]))}"
-    return f"{where or kind.__name__}: {first['msg'].removeprefix('Value error, ')}, got {got!r}"
+        return f"unknown key {_shown(where)}; {options(_keys_beside(kind, first['loc']), str(first['loc'][-1]))}"
+    return f"{where or kind.__name__}: {first['msg'].removeprefix('Value error, ')}, got {_shown(got)}"
 
 
 def _keys_beside(kind: type[BaseModel], location: Sequence[int | str]) -> list[str]:

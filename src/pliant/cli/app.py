@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import functools
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, ParamSpec
+from typing import Annotated
 
 import typer
 from rich.console import Console
 
 from pliant import __version__
-from pliant.errors import ConfigError, PliantError, RunFailedError
+from pliant.cli.guarded import guarded
+from pliant.errors import ConfigError
 
 app = typer.Typer(
     name="pliant",
@@ -24,33 +24,6 @@ app = typer.Typer(
 )
 _out = Console()
 _err = Console(stderr=True)
-
-P = ParamSpec("P")
-
-
-def _guarded(command: Callable[P, None]) -> Callable[P, None]:
-    """Exit code 2 for bad input, 1 when a run failed, 130 after Ctrl-C: one sentence, never a traceback."""
-
-    @functools.wraps(command)
-    def guarded(*args: P.args, **kwargs: P.kwargs) -> None:
-        try:
-            command(*args, **kwargs)
-        except RunFailedError as error:
-            _complain("failed", str(error))
-            raise typer.Exit(1) from None
-        except PliantError as error:
-            _complain("error", str(error))
-            raise typer.Exit(2) from None
-        except KeyboardInterrupt as error:
-            _complain("interrupted", str(error) or "what was recorded until now is kept")
-            raise typer.Exit(130) from None
-
-    return guarded
-
-
-def _complain(kind: str, text: str) -> None:
-    _err.print(f"{kind}: {text}", style="red", markup=False, highlight=False, soft_wrap=True)
-
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for logs, figures and summary.json.")]
 Sets = Annotated[
@@ -78,7 +51,7 @@ Seed = Annotated[int | None, typer.Option(min=0, help="Seed of every random draw
 
 
 @app.command()
-@_guarded
+@guarded
 def run(
     target: Annotated[
         str,
@@ -106,7 +79,7 @@ def run(
 
 
 @app.command()
-@_guarded
+@guarded
 def study(
     name: Annotated[
         str | None,
@@ -182,7 +155,7 @@ def _refuse(option: str, others: Mapping[str, object]) -> None:
 
 
 @app.command()
-@_guarded
+@guarded
 def live(
     target: Annotated[
         str, typer.Argument(metavar="[TASK.toml|STUDY|CONFIG.toml|FILE.mcap]", help="What to run, or a log to replay.")
@@ -206,7 +179,7 @@ def live(
 
 
 @app.command()
-@_guarded
+@guarded
 def log(
     file: Annotated[Path, typer.Argument(metavar="FILE.mcap", help="A log that pliant wrote.")],
     plot: Annotated[bool, typer.Option("--plot", help="Draws the log into PNG files.")] = False,
@@ -219,7 +192,7 @@ def log(
 
 
 @app.command()
-@_guarded
+@guarded
 def bench(
     what: Annotated[str, typer.Argument(metavar="[controllers]", help="What to time.")] = "controllers",
     json_: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Writes the numbers as JSON.")] = None,
@@ -231,7 +204,7 @@ def bench(
 
 
 @app.command("list")
-@_guarded
+@guarded
 def list_(
     what: Annotated[
         str | None, typer.Argument(metavar="[robots|controllers|studies|tasks]", help="What to list; nothing: all.")
@@ -244,7 +217,7 @@ def list_(
 
 
 @app.command()
-@_guarded
+@guarded
 def new(
     what: Annotated[str, typer.Argument(metavar="task|controller", help="What to begin.")],
     name: Annotated[
@@ -267,7 +240,7 @@ def new(
 
 
 @app.command()
-@_guarded
+@guarded
 def doctor(
     robot: Annotated[
         str | None, typer.Argument(metavar="[ROBOT|FILE]", help="A robot: what was understood of it.")

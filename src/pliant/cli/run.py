@@ -12,9 +12,9 @@ from rich.console import Console
 from pliant.cli.progress import progress_bar
 from pliant.cli.report import print_results, save_summary
 from pliant.errors import RunFailedError
-from pliant.experiments.base import CaseConfig, Experiment, Study
+from pliant.experiments.base import CaseConfig, Experiment, Study, check_windows
 from pliant.experiments.choice import chosen
-from pliant.experiments.config import parse_assignments
+from pliant.experiments.config import assigned
 from pliant.experiments.runner import run_case
 from pliant.telemetry.output import output_folder
 
@@ -36,6 +36,7 @@ def run_command(
         RunFailedError: the run stopped early; what was recorded is kept.
     """
     study, config = resolve(target, case, overrides, assignments)
+    check_windows(config)
     folder = output_folder(out or default_folder(study, config.case))
     experiment = study.build(config)
     for note in experiment.robot.notes:
@@ -93,7 +94,7 @@ def resolve(
     target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]
 ) -> tuple[Study[Any], CaseConfig]:
     """The study and the checked configuration that a user means on the command line. Raises ConfigError."""
-    return chosen(target, case, overrides, parse_assignments(assignments))
+    return chosen(target, case, overrides, assigned(assignments))
 
 
 def default_folder(study: Study[Any], case: str) -> Path:

@@ -15,7 +15,7 @@ from rich.table import Table
 
 from pliant import __version__
 from pliant.cli.progress import count_bar
-from pliant.experiments.config import merged, parse_assignments
+from pliant.experiments.config import assigned, merged
 from pliant.experiments.lock import locked
 from pliant.experiments.parquet import write_parquet
 from pliant.experiments.pool import open_pool
@@ -47,7 +47,7 @@ def tune_command(
     """
     require_optuna()
     tuning = find_tuning(get_study(name), controller, case)
-    changes = parse_assignments(assignments)
+    changes = assigned(assignments)
     tuning = replace(tuning, runs=[merged(config, changes) for config in tuning.runs])
     check_buildable(name, merged(tuning.runs[0], tuning.changes(tuning.start)))
     folder = output_folder(out or Path("pliant-out") / f"{name}-tune-{controller}")

@@ -6,9 +6,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, Self, TypeVar
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from pliant.controllers.joint_limits import JointLimitsConfig
 from pliant.errors import ConfigError, PliantError, options
@@ -21,6 +21,10 @@ from pliant.wiring.registry import controllers
 
 if TYPE_CHECKING:
     from pliant.experiments.tuning import Tuning
+
+
+MOST_STEPS = 10**8
+"""of a run, of the control and of the physics"""
 
 
 class CaseConfig(Config):
@@ -56,8 +60,37 @@ class CaseConfig(Config):
             raise ValueError(str(error)) from None
         return names
 
+    @property
+    def clock(self) -> Mapping[str, float]:
+        """Name → s of the steps that a run is made of; a run that would not end for years is refused by them."""
+        return {}
+
+    @property
+    def windows(self) -> Mapping[str, tuple[float, float]]:
+        """What is measured → s, begin and end of the time in which it is; see `check_windows`."""
+        return {}
+
+    @model_validator(mode="after")
+    def _comes_to_an_end(self) -> Self:
+        for name, step in self.clock.items():
+            if not 1.0 <= self.duration / step * (1.0 + 1e-9) <= MOST_STEPS:
+                raise ValueError(
+                    f"a run takes 1 to {MOST_STEPS:.0e} steps; duration / {name} = {self.duration:g} s / {step:g} s"
+                )
+        return self
+
 
 C = TypeVar("C", bound=CaseConfig)
+
+
+def check_windows(config: CaseConfig) -> None:
+    """Raises ConfigError if something would be measured at a time that is not part of the run."""
+    for name, (begin, end) in config.windows.items():
+        if not (0.0 <= begin < min(end, config.duration)):
+            raise ConfigError(
+                f"{name!r} would be measured from {begin:g} s to {end:g} s, which is no part of the run: it takes"
+                f" {config.duration:g} s; choose another duration or window"
+            )
 
 
 @dataclass(frozen=True)

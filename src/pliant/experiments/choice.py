@@ -31,6 +31,8 @@ def chosen(
         target, values = str(found.pop("study")), found
     study = get_study(target)
     from_file = values.pop("case", None)
+    if not isinstance(from_file, str | None):
+        raise ConfigError(f"{target}: 'case' is a name, got {from_file!r}; {options(study.cases)}")
     return study, configured(study, case or from_file, [values, _given(overrides), changes])
 
 

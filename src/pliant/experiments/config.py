@@ -1,5 +1,24 @@
 """Typed configurations, as `pliant.configuration` has them."""
 
-from pliant.configuration import Config, merged, parse_assignments, read_toml, validated
+from __future__ import annotations
 
-__all__ = ["Config", "merged", "parse_assignments", "read_toml", "validated"]
+from collections.abc import Iterable
+from typing import Any
+
+from pliant.configuration import Config, merged, parse_assignments, read_toml, validated
+from pliant.errors import ConfigError
+
+__all__ = ["Config", "assigned", "merged", "parse_assignments", "read_toml", "validated"]
+
+IDENTITY = ("case", "study", "variant")
+"""keys that say which run it is: tables and files are named after them"""
+
+
+def assigned(assignments: Iterable[str]) -> dict[str, Any]:
+    """The changes that a user's `--set` makes to a case. Raises ConfigError as `parse_assignments` does, and for a key
+    that says which run it is."""
+    changes = parse_assignments(assignments)
+    for key in IDENTITY:
+        if key in changes:
+            raise ConfigError(f"--set cannot change {key!r}, which says which run it is; name another study or --case")
+    return changes

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pliant import __version__
 from pliant.errors import OutputError
+from pliant.files import read_file
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -56,10 +57,7 @@ def read_parquet(path: Path) -> tuple[pa.Table, dict[str, Any]]:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise OutputError(f"{path} cannot be read: {error.strerror or error}") from None
+    data = read_file(path)
     try:
         # without threads of pyarrow's, which may still hold `data` when Python ends
         with pq.ParquetFile(pa.BufferReader(data), pre_buffer=False, page_checksum_verification=True) as file:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pliant.errors import ConfigError, PliantError
-from pliant.experiments.base import CaseConfig, Result
-from pliant.experiments.config import merged, parse_assignments
+from pliant.experiments.base import CaseConfig, Result, check_windows
+from pliant.experiments.config import assigned, merged
 from pliant.experiments.pool import Lost, Pool, in_this_process
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, Run, key
@@ -42,7 +42,7 @@ def asked_runs(request: Request) -> list[CaseConfig]:
     study = get_study(request.study)
     if request.seeds is not None and not 1 <= request.seeds <= MOST_SEEDS:
         raise ConfigError(f"a sweep takes 1 to {MOST_SEEDS} seeds per case, got {request.seeds}")
-    changes = parse_assignments(request.assignments)
+    changes = assigned(request.assignments)
     cases = request.cases or tuple(study.cases)
     runs: list[CaseConfig] = []
     for case in cases:
@@ -51,6 +51,8 @@ def asked_runs(request: Request) -> list[CaseConfig]:
         runs += [merged(config, changes) for config in rows]
     found = list({key(config): config for config in runs}.values())
     refuse_same_names(found)
+    for config in found:
+        check_windows(config)
     return found
 
 

@@ -23,15 +23,17 @@ class IdentifyToolConfig(Config):
 
     sensor_frame: str = Field(default="flange", description="frame of the force/torque sensor")
     task_frame: str | None = Field(default=None, description="frame of the reference's task; None: the sensor's")
-    poses: int = Field(default=8, ge=4, description="number of poses; more make the uncertainty smaller")
-    joints: int = Field(default=3, ge=1, description="how many of the last joints move")
+    poses: int = Field(default=8, ge=4, le=1000, description="number of poses; more make the uncertainty smaller")
+    joints: int = Field(default=3, ge=1, le=100, description="how many of the last joints move")
     share: float = Field(default=0.8, gt=0.0, le=1.0, description="of each joint's range that is used")
     lowest: float | None = Field(
         default=None, description="least height of the sensor; None: 0.1 m below home", json_schema_extra={"unit": "m"}
     )
-    move: float = Field(default=2.0, gt=0.0, description="from pose to pose", json_schema_extra={"unit": "s"})
-    settle: float = Field(default=0.6, gt=0.0, description="rest before reading", json_schema_extra={"unit": "s"})
-    average: float = Field(default=0.4, gt=0.0, description="reading", json_schema_extra={"unit": "s"})
+    move: float = Field(default=2.0, ge=0.01, le=1e3, description="from pose to pose", json_schema_extra={"unit": "s"})
+    settle: float = Field(
+        default=0.6, ge=0.01, le=1e3, description="rest before reading", json_schema_extra={"unit": "s"}
+    )
+    average: float = Field(default=0.4, ge=0.01, le=1e3, description="reading", json_schema_extra={"unit": "s"})
     still: float = Field(
         default=0.02, gt=0.0, description="largest mean joint speed while reading", json_schema_extra={"unit": "rad/s"}
     )

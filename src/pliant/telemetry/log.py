@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, OutputError, options
+from pliant.files import read_file
 from pliant.spatial import Array
 from pliant.telemetry.columns import columns, data_frame
 from pliant.telemetry.info import RunInfo
@@ -90,10 +91,7 @@ class Log:
                 up to the cut.
         """
         name = str(source) if isinstance(source, (str, Path)) else "the log's stream"
-        try:
-            data = Path(source).read_bytes() if isinstance(source, (str, Path)) else source.read()
-        except OSError as error:
-            raise OutputError(f"{name} cannot be read: {error.strerror}") from error
+        data = read_file(source) if isinstance(source, (str, Path)) else source.read()
         contents = read(name, data)
         if "pliant" not in contents.metadata:
             if not contents.complete:

@@ -21,12 +21,12 @@ def output_folder(path: str | os.PathLike[str]) -> Path:
     Raises:
         OutputError: it cannot be created or written to.
     """
-    folder = Path(path).expanduser()
+    folder = _expanded(Path(path))
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
         raise OutputError(f"the output folder {folder} cannot be created: a file of that name is there") from error
-    except OSError as error:
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         raise OutputError(f"the output folder {folder} cannot be created: {_why(error)}") from error
     try:
         with tempfile.TemporaryFile(dir=folder):
@@ -51,5 +51,12 @@ def write_text(path: Path, text: str) -> None:
         raise OutputError(f"{path} cannot be written: {_why(error)}") from error
 
 
-def _why(error: OSError) -> str:
-    return error.strerror or str(error)
+def _expanded(path: Path) -> Path:
+    try:
+        return path.expanduser()
+    except RuntimeError as error:  # there is no such user
+        raise OutputError(f"the output folder {path} cannot be created: {error}") from None
+
+
+def _why(error: OSError | ValueError) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)

@@ -8,6 +8,8 @@ see `hardware.compensation`.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -34,14 +36,19 @@ FAMILY = "haptic"
 TASK = "foot"
 """label of the impedance in channel names"""
 
-Vector = tuple[float, float, float]
-NotNegative = Annotated[float, Field(ge=0.0)]
+_Number = Annotated[float, Field(ge=-1e6, le=1e6)]
+Vector = tuple[_Number, _Number, _Number]
+NotNegative = Annotated[float, Field(ge=0.0, le=1e8)]
 Triple = tuple[NotNegative, NotNegative, NotNegative]
 
 
 def quantity(default: Any, unit: str, description: str, **limits: Any) -> Any:
     """A field with a unit."""
     return Field(default, description=description, json_schema_extra={"unit": unit}, **limits)
+
+
+_Edge = Annotated[float, Field(ge=1e-4, le=100.0)]  # m
+_Scale = Annotated[float, Field(ge=1e-3, le=1e3)]
 
 
 class Impedance(Config):
@@ -71,10 +78,10 @@ class Impedance(Config):
 class Material(Config):
     """What a thing feels like. Defaults: the rigid objects of [HapFIC] sec. III."""
 
-    stiffness: float = quantity(1e6, "N/m", "K of every contact point", gt=0.0)
-    damping: float = quantity(1e4, "N s/m", "D", ge=0.0)
-    friction: float = quantity(0.5, "1", "Coulomb coefficient at rest", ge=0.0)
-    friction_moving: float = quantity(0.3, "1", "Coulomb coefficient while sliding", ge=0.0)
+    stiffness: float = quantity(1e6, "N/m", "K of every contact point", gt=0.0, le=1e9)
+    damping: float = quantity(1e4, "N s/m", "D", ge=0.0, le=1e9)
+    friction: float = quantity(0.5, "1", "Coulomb coefficient at rest", ge=0.0, le=10.0)
+    friction_moving: float = quantity(0.3, "1", "Coulomb coefficient while sliding", ge=0.0, le=10.0)
 
 
 SMOOTH = Material(friction=0.0, friction_moving=0.0)
@@ -84,7 +91,7 @@ SOFT = Material(stiffness=1e3, damping=1e2)
 class Floor(Config):
     """A plane through a point on the world's z axis."""
 
-    height: float = quantity(0.0, "m", "where it meets the world's z axis")
+    height: float = quantity(0.0, "m", "where it meets the world's z axis", ge=-10.0, le=10.0)
     tilt: Vector = quantity((0.0, 0.0, 0.0), "rad", "about the world's x and y axes; the third is not used")
     material: Material = SMOOTH
 
@@ -92,18 +99,18 @@ class Floor(Config):
 class BoxConfig(Config):
     """A rigid box."""
 
-    size: Vector = quantity((0.12, 0.2, 0.2), "m", "edge lengths")
+    size: tuple[_Edge, _Edge, _Edge] = quantity((0.12, 0.2, 0.2), "m", "edge lengths")
     position: Vector = quantity((0.21, 0.0, 0.1), "m", "of its centre")
-    mass: float = quantity(2.0, "kg", "0: fixed to the world", ge=0.0)
+    mass: float = quantity(2.0, "kg", "0: fixed to the world", ge=0.0, le=1e5)
     material: Material = Material()
 
 
 class BallConfig(Config):
     """A soft ball."""
 
-    radius: float = quantity(0.1, "m", "", gt=0.0)
+    radius: float = quantity(0.1, "m", "", ge=1e-4, le=100.0)
     position: Vector = quantity((0.12, 0.0, 0.1), "m", "of its centre")
-    mass: float = quantity(0.5, "kg", "0: fixed to the world", ge=0.0)
+    mass: float = quantity(0.5, "kg", "0: fixed to the world", ge=0.0, le=1e5)
     material: Material = SOFT
 
 
@@ -122,15 +129,17 @@ class Hardware(Config):
     compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(
         default="gravity", description="what the leg compensates by itself; the paper does not say"
     )
-    joint_damping: float = quantity(0.0, "N·m s/rad", "in the joints' mechanics", ge=0.0)
-    bandwidth: float | None = quantity(None, "Hz", "first-order torque response of the drives; none: immediate", gt=0.0)
-    peak_torque: float | None = quantity(None, "N·m", "largest motor torque; none: the robot's limit", gt=0.0)
-    mass_scale: tuple[float, ...] | None = quantity(
+    joint_damping: float = quantity(0.0, "N·m s/rad", "in the joints' mechanics", ge=0.0, le=1e4)
+    bandwidth: float | None = quantity(
+        None, "Hz", "first-order torque response of the drives; none: immediate", gt=0.0, le=1e5
+    )
+    peak_torque: float | None = quantity(None, "N·m", "largest motor torque; none: the robot's limit", gt=0.0, le=1e6)
+    mass_scale: tuple[_Scale, ...] | None = quantity(
         None, "1", "factor on the mass and inertia of each joint's link; none: 1"
     )
-    force_noise: float = quantity(0.0, "N", "standard deviation of the force sensor's white noise", ge=0.0)
-    force_delay: float = quantity(0.0, "s", "age of the force signal", ge=0.0)
-    command_delay: float = quantity(0.0, "s", "from a measurement to the effect of its command", ge=0.0)
+    force_noise: float = quantity(0.0, "N", "standard deviation of the force sensor's white noise", ge=0.0, le=1e4)
+    force_delay: float = quantity(0.0, "s", "age of the force signal", ge=0.0, le=1.0)
+    command_delay: float = quantity(0.0, "s", "from a measurement to the effect of its command", ge=0.0, le=1.0)
 
     @property
     def perfect(self) -> bool:
@@ -150,14 +159,14 @@ class Planner(Config):
         description="superposition: never leaves the hull of the targets; attractor: [HapFIC] eq. 2-3, corrected, which"
         " haptic-paper always has",
     )
-    speed: float = quantity(0.2, "m/s", "fastest motion of the target", gt=0.0)
-    acceleration: float = quantity(2.0, "m/s²", "largest acceleration of the target", gt=0.0)
+    speed: float = quantity(0.2, "m/s", "fastest motion of the target", ge=1e-4, le=100.0)
+    acceleration: float = quantity(2.0, "m/s²", "largest acceleration of the target", ge=1e-4, le=1e4)
 
 
 class Step(Config):
     """What the user changes at a time. What is not given stays as it was."""
 
-    time: float = quantity(0.0, "s", "since the start", ge=0.0)
+    time: float = quantity(0.0, "s", "since the start", ge=0.0, le=1e6)
     name: str = Field(default="", description="of the phase that begins, for figures")
     target: Vector | None = quantity(None, "m", "of the foot")
     force: Vector | None = quantity(None, "N", "F_d: desired reaction of the environment on the foot")
@@ -170,9 +179,9 @@ class Step(Config):
 class OnlineChanges(Config):
     """Random changes of F_d, K_0, F_max, x_b, reset and target, drawn from the seed; some do not fit together."""
 
-    count: int = Field(default=50, ge=1, description="how many")
-    rate: float = quantity(4.0, "Hz", "changes per second", gt=0.0)
-    begin: float = quantity(1.0, "s", "of the first one", gt=0.0)
+    count: int = Field(default=50, ge=1, le=10_000, description="how many")
+    rate: float = quantity(4.0, "Hz", "changes per second", ge=1e-3, le=1e3)
+    begin: float = quantity(1.0, "s", "of the first one", gt=0.0, le=1e6)
 
 
 class Check(Config):
@@ -199,7 +208,7 @@ class Check(Config):
         "share",
     ] = Field(description="what is measured; see `pliant.studies.haptic.measure`")
     name: str
-    begin: float = quantity(0.0, "s", "start of the window; the command's time for `settle`")
+    begin: float = quantity(0.0, "s", "start of the window; the command's time for `settle`", ge=0.0)
     end: float | None = quantity(None, "s", "end of the window; none: of the run")
     axis: int = Field(default=2, ge=0, le=2, description="x, y, z")
     wanted: float | None = quantity(None, "N", "force that was asked for; none: as the log has it")
@@ -231,7 +240,11 @@ class HapticConfig(CaseConfig):
         default={}, description="changes to the controller's parameters beside `impedance` and `exploration`"
     )
     torque_step: float | None = quantity(
-        None, "1", "largest change of a joint's torque per period, as a share of its limit; none: unbounded", gt=0.0
+        None,
+        "1",
+        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
+        gt=0.0,
+        le=1e3,
     )
     start: tuple[float, ...] | None = quantity(None, "rad", "joint positions at the start; none: the robot's home")
     steps: tuple[Step, ...] = Field(
@@ -250,6 +263,14 @@ class HapticConfig(CaseConfig):
         except PliantError as error:
             raise ValueError(str(error)) from None
         return name
+
+    @property
+    def clock(self) -> Mapping[str, float]:
+        return {"period": self.period, "physics_step": self.physics_step}
+
+    @property
+    def windows(self) -> Mapping[str, tuple[float, float]]:
+        return {check.name: (check.begin, math.inf if check.end is None else check.end) for check in self.checks}
 
     @property
     def entry(self) -> ControllerEntry[Any]:

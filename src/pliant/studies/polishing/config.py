@@ -29,16 +29,28 @@ PHASES: Mapping[str, bool] = {"reach": False, "track": False, "ramp": True, "con
 class Table(Config):
     """The surface that is polished. The tool comes down at y = 0."""
 
-    height: float = Field(default=0.01, description="z of its surface", json_schema_extra={"unit": "m"})
-    height_error: float = Field(
-        default=0.0, description="by how much the controller believes it higher", json_schema_extra={"unit": "m"}
+    height: float = Field(
+        default=0.01, ge=-10.0, le=10.0, description="z of its surface", json_schema_extra={"unit": "m"}
     )
-    x: float = Field(default=0.65, description="x at which the tool comes down", json_schema_extra={"unit": "m"})
-    stiffness: float = Field(default=1e4, gt=0.0, json_schema_extra={"unit": "N/m"})
-    damping: float = Field(default=1e2, ge=0.0, json_schema_extra={"unit": "N·s/m"})
-    friction: float = Field(default=0.25, ge=0.0, description="Coulomb coefficient", json_schema_extra={"unit": "1"})
+    height_error: float = Field(
+        default=0.0,
+        ge=-1.0,
+        le=1.0,
+        description="by how much the controller believes it higher",
+        json_schema_extra={"unit": "m"},
+    )
+    x: float = Field(
+        default=0.65, ge=-10.0, le=10.0, description="x at which the tool comes down", json_schema_extra={"unit": "m"}
+    )
+    stiffness: float = Field(default=1e4, gt=0.0, le=1e8, json_schema_extra={"unit": "N/m"})
+    damping: float = Field(default=1e2, ge=0.0, le=1e8, json_schema_extra={"unit": "N·s/m"})
+    friction: float = Field(
+        default=0.25, ge=0.0, le=10.0, description="Coulomb coefficient", json_schema_extra={"unit": "1"}
+    )
     tilt: float = Field(
         default=0.0,
+        ge=-1.5,
+        le=1.5,
         description="about the world's x axis, unknown to the controller",
         json_schema_extra={"unit": "rad"},
     )
@@ -48,38 +60,64 @@ class Task(Config):
     """What the tool does. Times count from the start of the run."""
 
     start: float = Field(
-        default=0.10, gt=0.0, description="height over the table where the run starts", json_schema_extra={"unit": "m"}
+        default=0.10,
+        gt=0.0,
+        le=10.0,
+        description="height over the table where the run starts",
+        json_schema_extra={"unit": "m"},
     )
     above: float = Field(
-        default=0.02, gt=0.0, description="height over the table where reach ends", json_schema_extra={"unit": "m"}
+        default=0.02,
+        gt=0.0,
+        le=10.0,
+        description="height over the table where reach ends",
+        json_schema_extra={"unit": "m"},
     )
     reach: float = Field(
-        default=0.5, gt=0.0, description="end of the motion above the table", json_schema_extra={"unit": "s"}
+        default=0.5, gt=0.0, le=1e4, description="end of the motion above the table", json_schema_extra={"unit": "s"}
     )
     touch: float = Field(
-        default=1.0, gt=0.0, description="end of the descent; contact begins", json_schema_extra={"unit": "s"}
+        default=1.0, gt=0.0, le=1e4, description="end of the descent; contact begins", json_schema_extra={"unit": "s"}
     )
     pressed: float = Field(
-        default=2.0, gt=0.0, description="end of the ramp of the force", json_schema_extra={"unit": "s"}
+        default=2.0, gt=0.0, le=1e4, description="end of the ramp of the force", json_schema_extra={"unit": "s"}
     )
     circle: float = Field(
-        default=3.0, gt=0.0, description="start of the circle or of the force steps", json_schema_extra={"unit": "s"}
+        default=3.0,
+        gt=0.0,
+        le=1e4,
+        description="start of the circle or of the force steps",
+        json_schema_extra={"unit": "s"},
     )
-    light: float = Field(default=5.0, gt=0.0, description="force at first contact", json_schema_extra={"unit": "N"})
-    force: float = Field(default=50.0, gt=0.0, description="force of the circle", json_schema_extra={"unit": "N"})
+    light: float = Field(
+        default=5.0, gt=0.0, le=1e4, description="force at first contact", json_schema_extra={"unit": "N"}
+    )
+    force: float = Field(
+        default=50.0, gt=0.0, le=1e4, description="force of the circle", json_schema_extra={"unit": "N"}
+    )
     pattern: Literal["circle", "square"] = Field(
         default="circle", description="a circle under constant force, or force steps on one spot ([FFMPC] VII-B)"
     )
     low: float = Field(
-        default=20.0, gt=0.0, description="lower level of the force steps", json_schema_extra={"unit": "N"}
+        default=20.0, gt=0.0, le=1e4, description="lower level of the force steps", json_schema_extra={"unit": "N"}
     )
     half_period: float = Field(
-        default=1.0, gt=0.0, description="time on each level of the force steps", json_schema_extra={"unit": "s"}
+        default=1.0,
+        ge=1e-3,
+        le=1e4,
+        description="time on each level of the force steps",
+        json_schema_extra={"unit": "s"},
     )
-    radius: float = Field(default=0.07, gt=0.0, description="of the circle", json_schema_extra={"unit": "m"})
-    speed: float = Field(default=3.0, gt=0.0, description="of the circle", json_schema_extra={"unit": "rad/s"})
+    radius: float = Field(default=0.07, gt=0.0, le=10.0, description="of the circle", json_schema_extra={"unit": "m"})
+    speed: float = Field(
+        default=3.0, gt=0.0, le=100.0, description="of the circle", json_schema_extra={"unit": "rad/s"}
+    )
     ease: float = Field(
-        default=0.5, gt=0.0, description="time in which the circle starts from rest", json_schema_extra={"unit": "s"}
+        default=0.5,
+        ge=1e-3,
+        le=1e4,
+        description="time in which the circle starts from rest",
+        json_schema_extra={"unit": "s"},
     )
     found: bool = Field(default=False, description="contact begins when it is felt, not by the timetable")
 
@@ -90,18 +128,21 @@ class Estimation(Config):
     joint_memory: float | None = Field(
         default=None,
         ge=0.0,
+        le=100.0,
         description="of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, else 0",
         json_schema_extra={"unit": "s"},
     )
     observer_gain: float = Field(
         default=30.0,
         gt=0.0,
+        le=1e4,
         description="of the momentum observer, which runs where the controller asks for a disturbance",
         json_schema_extra={"unit": "rad/s"},
     )
     wrench_cutoff: float | None = Field(
         default=None,
         gt=0.0,
+        le=1e5,
         description="of a Butterworth filter of the contact wrench; none: unfiltered",
         json_schema_extra={"unit": "Hz"},
     )
@@ -111,10 +152,10 @@ class Pushes(Config):
     """Pushes by a person: a constant force in a random horizontal direction on another frame, again and again."""
 
     frame: str = Field(default="flange", description="that is pushed")
-    force: float = Field(default=20.0, gt=0.0, description="of one push", json_schema_extra={"unit": "N"})
-    duration: float = Field(default=0.5, gt=0.0, description="of one push", json_schema_extra={"unit": "s"})
-    gap: float = Field(default=0.8, gt=0.0, description="between two pushes", json_schema_extra={"unit": "s"})
-    start: float = Field(default=4.0, ge=0.0, description="of the first push", json_schema_extra={"unit": "s"})
+    force: float = Field(default=20.0, ge=0.0, le=1e4, description="of one push", json_schema_extra={"unit": "N"})
+    duration: float = Field(default=0.5, ge=1e-3, le=1e4, description="of one push", json_schema_extra={"unit": "s"})
+    gap: float = Field(default=0.8, ge=1e-3, le=1e4, description="between two pushes", json_schema_extra={"unit": "s"})
+    start: float = Field(default=4.0, ge=0.0, le=1e4, description="of the first push", json_schema_extra={"unit": "s"})
 
 
 class PolishingConfig(CaseConfig):
@@ -138,6 +179,7 @@ class PolishingConfig(CaseConfig):
     unknown_mass: float = Field(
         default=0.0,
         ge=0.0,
+        le=1e3,
         description="of the tool, beside its known 0.4 kg",
         json_schema_extra={"unit": "kg"},
     )
@@ -150,12 +192,15 @@ class PolishingConfig(CaseConfig):
     )
     delay_error: float = Field(
         default=0.0,
+        ge=-1.0,
+        le=1.0,
         description="of δ_o in controllers that predict: believed minus true",
         json_schema_extra={"unit": "s"},
     )
     torque_step: float | None = Field(
         default=None,
         gt=0.0,
+        le=1e3,
         description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         json_schema_extra={"unit": "1"},
     )
@@ -169,6 +214,19 @@ class PolishingConfig(CaseConfig):
     control: dict[str, Any] = Field(
         default={}, description="changes to the controller's parameters, e.g. control.contact.stiffness=[1e4]"
     )
+
+    @property
+    def clock(self) -> Mapping[str, float]:
+        return {"period": self.period, "physics_step": self.physics_step}
+
+    @property
+    def windows(self) -> Mapping[str, tuple[float, float]]:
+        task = self.task
+        return {
+            "first contact": (task.reach, self.duration),
+            "contact breaks": (task.pressed, self.duration),
+            "the work": (task.circle, self.duration),
+        }
 
     @property
     def entry(self) -> ControllerEntry[Any]:

@@ -7,10 +7,11 @@ pushes) is here, with the value chosen.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
+from pliant.configuration import in_order
 from pliant.controllers.presets import SOFT_STACK, STIFF_STACK, TABLE_I_ROBOT, TABLE_I_SIMULATION
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError
@@ -23,6 +24,13 @@ from pliant.wiring.wire import parameters_for
 PathKind = Literal["figure8", "line", "stretch", "hold"]
 
 
+_Force = Annotated[float, Field(ge=0.0, le=1e4)]  # N
+_Time = Annotated[float, Field(ge=1e-3, le=1e4)]  # s
+_Factor = Annotated[float, Field(ge=1e-3, le=1e3)]
+Span = Annotated[tuple[_Time, _Time], AfterValidator(in_order)]
+"""s, least and most"""
+
+
 class Path(Config):
     """What the tool does. It starts from rest within `ramp`."""
 
@@ -30,11 +38,17 @@ class Path(Config):
         default="figure8",
         description="figure8: x 0.1 m, z 0.2 m; line: along x; stretch: along −y until the elbow is straight; hold",
     )
-    period: float = Field(default=4.0, gt=0.0, description="of the figure-8", json_schema_extra={"unit": "s"})
-    amplitude: float = Field(default=0.5, gt=0.0, description="of the line", json_schema_extra={"unit": "m"})
-    peak_speed: float = Field(default=0.7, gt=0.0, description="of the line", json_schema_extra={"unit": "m/s"})
+    period: float = Field(default=4.0, ge=0.01, le=1e4, description="of the figure-8", json_schema_extra={"unit": "s"})
+    amplitude: float = Field(default=0.5, gt=0.0, le=10.0, description="of the line", json_schema_extra={"unit": "m"})
+    peak_speed: float = Field(
+        default=0.7, gt=0.0, le=100.0, description="of the line", json_schema_extra={"unit": "m/s"}
+    )
     ramp: float = Field(
-        default=2.0, ge=0.0, description="time in which the motion starts from rest", json_schema_extra={"unit": "s"}
+        default=2.0,
+        ge=0.0,
+        le=1e4,
+        description="time in which the motion starts from rest",
+        json_schema_extra={"unit": "s"},
     )
     method: Literal["mink", "aico"] = Field(
         default="mink",
@@ -46,9 +60,11 @@ class Joints(Config):
     """How the simulated joints behave."""
 
     friction: float = Field(
-        default=0.0, ge=0.0, description="dry friction of each joint", json_schema_extra={"unit": "N·m"}
+        default=0.0, ge=0.0, le=1e4, description="dry friction of each joint", json_schema_extra={"unit": "N·m"}
     )
-    damping: float = Field(default=0.0, ge=0.0, description="of each joint", json_schema_extra={"unit": "N·m s/rad"})
+    damping: float = Field(
+        default=0.0, ge=0.0, le=1e4, description="of each joint", json_schema_extra={"unit": "N·m s/rad"}
+    )
     compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(
         default="none", description="what the robot compensates by itself"
     )
@@ -60,28 +76,30 @@ class Joints(Config):
 class Wall(Config):
     """A wall in the tool's way that nobody knows of."""
 
-    x: float = Field(default=0.07, description="where it stops the tool", json_schema_extra={"unit": "m"})
-    stiffness: float = Field(default=1e4, gt=0.0, json_schema_extra={"unit": "N/m"})
-    damping: float = Field(default=1e2, ge=0.0, json_schema_extra={"unit": "N s/m"})
-    friction: float = Field(default=0.1, ge=0.0, json_schema_extra={"unit": "1"})
+    x: float = Field(
+        default=0.07, ge=-10.0, le=10.0, description="where it stops the tool", json_schema_extra={"unit": "m"}
+    )
+    stiffness: float = Field(default=1e4, gt=0.0, le=1e8, json_schema_extra={"unit": "N/m"})
+    damping: float = Field(default=1e2, ge=0.0, le=1e8, json_schema_extra={"unit": "N s/m"})
+    friction: float = Field(default=0.1, ge=0.0, le=10.0, json_schema_extra={"unit": "1"})
 
 
 class Pushes(Config):
     """Random pushes on a frame, one after the other."""
 
     frame: str = Field(default="elbow")
-    force: tuple[float, float] = Field(
+    force: Annotated[tuple[_Force, _Force], AfterValidator(in_order)] = Field(
         default=(10.0, 30.0), description="least and most", json_schema_extra={"unit": "N"}
     )
-    duration: tuple[float, float] = Field(default=(0.2, 0.6), json_schema_extra={"unit": "s"})
-    gap: tuple[float, float] = Field(default=(0.1, 0.4), json_schema_extra={"unit": "s"})
+    duration: Span = Field(default=(0.2, 0.6), json_schema_extra={"unit": "s"})
+    gap: Span = Field(default=(0.1, 0.4), json_schema_extra={"unit": "s"})
 
 
 class Retuning(Config):
     """Random changes of every gain and force bound while the robot moves."""
 
-    rate: float = Field(default=4.0, gt=0.0, description="changes per second", json_schema_extra={"unit": "Hz"})
-    factor: tuple[float, float] = Field(
+    rate: float = Field(default=4.0, gt=0.0, le=1e3, description="changes per second", json_schema_extra={"unit": "Hz"})
+    factor: Annotated[tuple[_Factor, _Factor], AfterValidator(in_order)] = Field(
         default=(0.1, 2.0), description="range of the factor on K_0 and F_max", json_schema_extra={"unit": "1"}
     )
 
@@ -126,6 +144,7 @@ class StackConfig(CaseConfig):
     torque_step: float | None = Field(
         default=0.14,
         gt=0.0,
+        le=1e3,
         description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         json_schema_extra={"unit": "1"},
     )
@@ -140,6 +159,14 @@ class StackConfig(CaseConfig):
     wall: Wall | None = None
     pushes: Pushes | None = None
     retuning: Retuning | None = None
+
+    @property
+    def clock(self) -> Mapping[str, float]:
+        return {"period": self.period, "physics_step": self.physics_step}
+
+    @property
+    def windows(self) -> Mapping[str, tuple[float, float]]:
+        return {"what the tool does": (self.settled, self.duration)}
 
     @property
     def settled(self) -> float:

@@ -1,0 +1,35 @@
+"""Files that a user names: whatever stands there is read to its end, or refused in a sentence."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from pliant.errors import OutputError
+
+
+def read_file(path: str | os.PathLike[str], most: float = float("inf")) -> bytes:
+    """The content of a regular file.
+
+    Args:
+        path: of the file.
+        most: bytes that it may have.
+
+    Raises:
+        OutputError: it does not exist, cannot be read, is larger, or is a folder, a pipe or a device, which may have no
+            end.
+    """
+    try:
+        about = Path(path).stat()
+        if not stat.S_ISREG(about.st_mode):
+            raise OutputError(f"{path} cannot be read: it is not a regular file")
+        if about.st_size > most:
+            raise OutputError(f"{path} cannot be read: it has {about.st_size} bytes, at most {most:.0f} make sense")
+        return Path(path).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
+        raise OutputError(f"{path!s} cannot be read: {_why(error)}") from None
+
+
+def _why(error: OSError | ValueError) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)

@@ -1,0 +1,89 @@
+"""Every leaf of a configuration with values that make no sense: refused in a sentence, or wired and stepped."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from pliant import loop
+from pliant.errors import ConfigError, PliantError
+from pliant.experiments.base import check_windows
+from pliant.experiments.config import assigned, merged
+from pliant.experiments.registry import get_study
+
+ODD = (math.nan, math.inf, -math.inf, -1, 0, 1e300, 10**23, "text")
+CASES = {"haptic": "online", "polishing": "ideal", "stack": "rest-plain"}
+
+
+def _leaves(tree: dict[str, Any], above: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    for key, value in tree.items():
+        if isinstance(value, dict) and value:
+            yield from _leaves(value, (*above, key))
+        else:
+            yield (*above, key), value
+
+
+def _tree(keys: tuple[str, ...], value: Any) -> dict[str, Any]:
+    for key in reversed(keys):
+        value = {key: value}
+    return value
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_an_odd_value_anywhere_is_refused_in_a_sentence_or_can_be_stepped(name: str) -> None:
+    study = get_study(name)
+    config = study.case(CASES[name]).model_copy(update={"duration": 0.02})
+    tried, refused = 0, list[str]()
+    for keys, old in _leaves(config.model_dump()):
+        for odd in ODD:
+            value = [odd] * len(old) if isinstance(old, (list, tuple)) and old else odd
+            tried += 1
+            try:
+                changed = merged(config, _tree(keys, value))
+                if name != "haptic":  # the quickest to wire stands for them
+                    continue
+                wired = study.build(changed)
+                loop.run(wired.plant, wired.estimator, wired.source, wired.controller, range(2), [], wired.robot)
+            except PliantError as error:
+                refused.append(f"{keys} {odd!r}: {error}")
+    assert tried >= 200
+    assert len(refused) > tried // 2
+    assert [text for text in refused if len(text.splitlines()) > 1] == []
+
+
+ENDLESS = [
+    ("stack", {"duration": 1e300}),
+    ("stack", {"duration": 1e11}),
+    ("stack", {"period": 1e-12}),
+    ("haptic", {"physics_step": 1e-300}),
+    ("polishing", {"physics_step": 1e-9}),
+    ("stack", {"wall": {"friction": 1e300}}),
+    ("stack", {"pushes": {"duration": [0, 0], "gap": [0, 0]}}),
+    ("stack", {"retuning": {"factor": [0, 2]}}),
+    ("haptic", {"online": {"count": 10**23}}),
+]
+
+
+@pytest.mark.parametrize(("name", "changes"), ENDLESS, ids=[f"{n}-{c}" for n, c in ENDLESS])
+def test_what_would_not_end_or_makes_no_sense_is_refused(name: str, changes: dict[str, Any]) -> None:
+    study = get_study(name)
+    with pytest.raises(ConfigError):
+        merged(study.case(next(iter(study.cases))), changes)
+
+
+def test_a_window_outside_the_run_is_refused_before_it_starts() -> None:
+    for name in CASES:
+        study = get_study(name)
+        config = study.case(next(iter(study.cases)))
+        check_windows(config)
+        with pytest.raises(ConfigError, match="no part of the run"):
+            check_windows(merged(config, {"duration": 0.1}))
+
+
+@pytest.mark.parametrize("key", ["case", "study", "variant"])
+def test_which_run_it_is_cannot_be_set(key: str) -> None:
+    with pytest.raises(ConfigError, match=f"--set cannot change '{key}'"):
+        assigned([f"{key}=other"])
