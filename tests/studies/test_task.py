@@ -88,6 +88,20 @@ def test_a_user_begins_a_task_runs_it_and_compares_controllers(tmp_path: Path, m
     assert all(case["failed"] == 0 for case in cases)
 
 
+def test_a_task_is_checked_before_it_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    short = ["--set", "path.pattern=hold", "--set", "path.time=1.0"]
+    done = CLI.invoke(app, ["task", "check", "wipe", *short])
+    assert done.exit_code == 0, done.output
+    assert "possible on the believed surface and on 10 drawn ones" in done.output
+    assert list(tmp_path.rglob("wipe_check.png"))
+    heavy = CLI.invoke(app, ["task", "check", "wipe", *short, "--set", "force.normal=900"])
+    assert heavy.exit_code == 1, heavy.output
+    assert "not possible on the believed surface" in heavy.output
+    assert CLI.invoke(app, ["task", "check"]).exit_code == 2
+    assert CLI.invoke(app, ["task", "check", "stack"]).exit_code == 2
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -260,7 +260,7 @@ def doctor(
 
 
 @app.command()
-@_guarded
+@guarded
 def compare(
     target: Annotated[str, typer.Argument(metavar="TASK.toml|TASK|STUDY", help="What to run with each controller.")],
     controllers: Annotated[
@@ -287,17 +287,24 @@ def compare(
 
 
 @app.command()
-@_guarded
+@guarded
 def task(
-    action: Annotated[str, typer.Argument(metavar="schema", help="What to do.")],
+    action: Annotated[str, typer.Argument(metavar="check|schema", help="What to do.")],
+    target: Annotated[str | None, typer.Argument(metavar="[TASK.toml|TASK]", help="The task to check.")] = None,
+    case: Annotated[str | None, typer.Option(help="Variant of the task.")] = None,
+    robot: RobotOption = None,
     out: Out = None,
+    set_: Sets = None,
 ) -> None:
-    """Says what can stand in a task file, as a JSON schema."""
-    from pliant.cli.task import schema_command
+    """Says whether a robot can do a task (check), or what can stand in a task file (schema)."""
+    from pliant.cli.task import check_command, schema_command
 
-    if action != "schema":
-        raise ConfigError(f"there is no action {action!r}; valid: schema")
-    schema_command(_out, out)
+    if action == "schema" and target is None:
+        schema_command(_out, out)
+    elif action == "check" and target is not None:
+        check_command(_out, target, case, {"robot": robot}, set_ or [], out)
+    else:
+        raise ConfigError(f"write pliant task check TASK.toml, or pliant task schema, got {action!r} {target or ''}")
 
 
 def _version(show: bool) -> None:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
+from rich.table import Table
 
 from pliant.errors import ConfigError, options
 from pliant.tasks.task import Task
-from pliant.telemetry.output import write_text
+from pliant.telemetry.output import output_folder, write_text
 
 _SIZES = {
     "raster": ("size = [0.12, 0.08]", "m, along and across", "spacing = 0.02", "m"),
@@ -76,6 +79,46 @@ def schema_command(console: Console, out: Path | None) -> None:
         _say(console, f"schema   {out}")
     else:
         _say(console, text)
+
+
+def check_command(
+    console: Console,
+    target: str,
+    case: str | None,
+    overrides: Mapping[str, Any],
+    assignments: Sequence[str],
+    out: Path | None,
+) -> None:
+    """Whether a robot can do a task, on the believed surface and on ten drawn true ones: a table and a picture.
+
+    Raises:
+        PliantError: bad input.
+        RunFailedError: it cannot; the sentence says where it fails first and what would help.
+    """
+    from pliant.cli.run import resolve, study_folder
+    from pliant.errors import RunFailedError
+    from pliant.studies.task.check import checked_reach
+    from pliant.studies.task.config import TaskCase
+    from pliant.telemetry.plots import save
+    from pliant.wiring.reach_figure import reach_figure
+
+    _, config = resolve(target, case, overrides, assignments)
+    if not isinstance(config, TaskCase):
+        raise ConfigError(f"{target} is a study; `pliant task check` checks a task file")
+    found = checked_reach(config)
+    table = Table("surface", "what", "least or most", "bound", "where", "kept")
+    for row in found.rows():
+        if row[0] == found.surfaces[0].label or row[-1] != "✓":
+            table.add_row(*row)
+    console.print(table)
+    file = save(
+        reach_figure(found, config.case), output_folder(out or study_folder(target)) / f"{config.case}_check.png"
+    )
+    _say(console, f"figure   {file}")
+    if not found.reachable:
+        failed = next(check for check in found.surfaces if not check.reachable)
+        raise RunFailedError(f"not possible on the {failed.label} surface: {failed.failure}; {found.help}")
+    _say(console, f"possible on the believed surface and on {len(found.surfaces) - 1} drawn ones")
 
 
 def _say(console: Console, text: str) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pliant.errors import ConfigError, options
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.config import merged, read_toml
 from pliant.experiments.registry import get_study

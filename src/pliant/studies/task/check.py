@@ -1,0 +1,36 @@
+"""Whether a robot can do a task, on the believed surface and on those that the seeds draw."""
+
+from __future__ import annotations
+
+from pliant.references.postures.posture import PostureOptions
+from pliant.references.reach.check import ReachCheck, check_reach
+from pliant.references.reach.course import course_of
+from pliant.studies.task.config import TaskCase
+from pliant.studies.task.geometry import believed_surface, force_of, robot_of, toolpath_of
+from pliant.studies.task.world import true_surface
+
+_DRAWN = 10
+
+
+def checked_reach(case: TaskCase, drawn: int = _DRAWN) -> ReachCheck:
+    """Reach, limits, freedom, torque and speed along the whole task. Args: drawn: how many true surfaces.
+
+    Raises:
+        PliantError: a robot, frame or path that there is not.
+    """
+    robot = robot_of(case, case.robot)
+    surface = believed_surface(case, robot)
+    path = toolpath_of(case, surface, robot)
+    phases = case.phases
+    course = course_of(path, force_of(case), phases.stand_off, phases.approach_speed, phases.leave)
+    seeds = (case.model_copy(update={"seed": case.seed + index}) for index in range(drawn))
+    true = [true_surface(one, surface, path).geometry for one in seeds]
+    return check_reach(
+        robot,
+        case.tool.frame,
+        course,
+        true,
+        case.tool.radius,
+        posture=PostureOptions(spins=case.path.spins),
+        nominal=robot.home,
+    )
