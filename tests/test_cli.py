@@ -119,7 +119,7 @@ def test_ctrl_c_keeps_what_was_recorded(tmp_path: Path) -> None:
 
 
 BAD_INPUT = [
-    (["run", "stakc"], "no study named 'stakc'"),
+    (["run", "stakc"], "no study or task named 'stakc'"),
     (["run", "--case", "figure9"], "no case 'figure9'"),
     (["run", "--controller", "pid"], "there is no controller 'pid'"),
     (["run", "--robot", "missing.urdf"], "missing.urdf does not exist"),
@@ -136,9 +136,9 @@ BAD_INPUT = [
     (["run", "--out", "broken.urdf/x"], "output folder"),
     (["run", "missing.toml"], "missing.toml does not exist"),
     (["run", "twice.toml"], "is not TOML"),
-    (["run", "nostudy.toml"], "needs a key 'study'"),
+    (["run", "nostudy.toml"], "unknown key 'duration'"),
     (["run", "unknown.toml"], "unknown key 'speed'"),
-    (["study", "nothing"], "no study named 'nothing'"),
+    (["study", "nothing"], "no study or task named 'nothing'"),
     (["log", "missing.mcap"], "missing.mcap cannot be read"),
     (["log", "broken.urdf"], "broken.urdf"),
     (["bench", "nothing"], "no benchmark 'nothing'"),

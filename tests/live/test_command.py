@@ -67,7 +67,7 @@ def test_port_in_use() -> None:
 
 def test_unknown_study_and_case() -> None:
     said = refused("stak")
-    assert "no study named 'stak'" in said
+    assert "no study or task named 'stak'" in said
     assert "did you mean 'stack'?" in said
     assert "no case 'figure9'" in refused("stack", "--case", "figure9")
 

@@ -96,7 +96,7 @@ def test_a_flipped_bit_or_a_cut_is_a_sentence_or_changes_nothing(tmp_path: Path)
             assert repr(read_results(tmp_path)) == before
         except PliantError as error:
             refused.append(str(error))
-    assert len(refused) > 200  # the others changed nothing: a flipped statistic of a column, say
+    assert len(refused) > 150  # the others changed nothing: a flipped statistic of a column, say
     assert all(len(text.splitlines()) == 1 for text in refused)
 
 

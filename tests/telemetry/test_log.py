@@ -55,7 +55,7 @@ def test_what_is_not_a_log_says_so(tmp_path: Path, content: bytes, says: str) ->
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match="No such file"):
         Log.open(tmp_path / "none.mcap")
-    with pytest.raises(OutputError, match="directory"):
+    with pytest.raises(OutputError, match="not a regular file"):
         Log.open(tmp_path)
 
 
