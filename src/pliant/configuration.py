@@ -6,9 +6,9 @@ import sys
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar, cast, get_args, get_origin
+from typing import Annotated, Any, TypeVar, cast, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from pliant.errors import ConfigError, OutputError, options
 from pliant.files import read_file
@@ -55,6 +55,21 @@ def _numbers(value: Any) -> Iterator[float]:
 
 C = TypeVar("C", bound=BaseModel)
 _MOST_DEPTH, _MOST_SHOWN, _MOST_BYTES = 32, 200, 1e6
+
+
+def quantity(default: Any, unit: str, description: str, **limits: Any) -> Any:
+    """A field with a unit. Args: default; unit; description; limits: pydantic's `ge`, `gt`, `le`, `lt`."""
+    return Field(default, description=f"{description} [{unit}]", json_schema_extra={"unit": unit}, **limits)
+
+
+def _in_order(value: tuple[float, float]) -> tuple[float, float]:
+    if value[0] > value[1]:
+        raise ValueError(f"a range goes from low to high, got {value}")
+    return value
+
+
+Range = Annotated[tuple[float, float], AfterValidator(_in_order)]
+"""lowest and highest value"""
 
 
 def read_toml(path: Path) -> dict[str, Any]:

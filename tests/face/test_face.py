@@ -72,14 +72,11 @@ def test_the_example_of_the_readme_moves_a_robot(tmp_path: Path, monkeypatch: py
     assert not list(tmp_path.iterdir())  # nothing is written unless a folder is given
 
 
-def test_an_object_that_can_be_run_takes_the_place_of_a_name() -> None:
-    class Task:
-        def chosen(self, case, overrides, changes):  # type: ignore[no-untyped-def]
-            assert (case, overrides["controller"], changes) == ("floor", "haptic", {"control": {"a": 1}})
-            raise ConfigError("asked")
-
-    with pytest.raises(ConfigError, match="asked"):
-        pliant.run(Task(), case="floor", controller="haptic", **{"control.a": 1})
+def test_a_task_is_run_by_its_name_or_its_file(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text('base = "wipe"\n', encoding="utf-8")
+    for what in ("wipe", tmp_path / "mine.toml"):
+        with pytest.raises(ConfigError, match=r"unknown key 'path\.sped'.*did you mean 'speed'"):
+            pliant.run(what, **{"path.sped": 1.0})
 
 
 @pytest.mark.parametrize("package", ["pandas", "polars"])

@@ -47,7 +47,7 @@ def test_a_file_inherits_and_its_variants_are_its_own(tmp_path: Path) -> None:
     [
         ("[path]\nspede = 1.0\n", r"task\.toml: unknown key 'path\.spede'.*did you mean 'speed'"),
         ('[path]\npattern = "zigzag"\n', r"path\.pattern.*'raster', 'spiral'.*got 'zigzag'"),
-        ("[path]\nspeed = -1.0\n", r"path\.speed.*greater than 0.*got -1"),
+        ("[path]\nspeed = -1.0\n", r"path\.speed.*greater than or equal to 0.*got -1"),
         ("[force]\nnormal = -5.0\n", r"a force on a surface pushes"),
         ("[force]\nnormal = [[0.0, 5], [0.0, 9]]\n", r"must increase"),
         ("[truth]\nshift = { uniform = [1.0, -1.0] }\n", r"low to high"),
@@ -95,22 +95,49 @@ def test_draws_stay_within_their_bounds(value: float, width: float, seed: int) -
     assert bounds(Normal(normal=(value, width))) == (value - 3.0 * width, value + 3.0 * width)
 
 
-TRUTHS = [
-    {"shift": 0.01, "tilt": 5.0, "axis": (1.0, 0.0, 0.0)},
-    {"stiffness": 1e5, "damping": 10.0, "friction": 0.9},
-    {"tool_mass": 1.0, "link_masses": 0.3},
-    {"imperfections": "p3"},
-]
+def any_truth(seed: int) -> dict[str, object]:
+    """Values of every key of `[truth]`, drawn."""
+    rng = np.random.default_rng(seed)
+    return {
+        "shift": float(rng.uniform(-0.02, 0.02)),
+        "tilt": {"uniform": sorted(rng.uniform(-20.0, 20.0, 2).tolist())},
+        "axis": "random" if seed % 2 else tuple(rng.standard_normal(3).tolist()),
+        "stiffness": float(rng.uniform(1e3, 1e5)),
+        "damping": {"choice": rng.uniform(10.0, 500.0, 3).tolist()},
+        "friction": {"normal": [0.3, float(rng.uniform(0.0, 0.1))]},
+        "tool_mass": float(rng.uniform(0.0, 2.0)),
+        "link_masses": float(rng.uniform(0.0, 0.5)),
+        "imperfections": ("none", "p3", "p3-without-torque-loop")[seed % 3],
+    }
 
 
-@pytest.mark.parametrize("truth", TRUTHS)
-def test_what_is_true_changes_no_parameter_and_no_reference(truth: dict[str, object]) -> None:
+@pytest.mark.parametrize("seed", range(12))
+def test_what_is_true_changes_no_parameter_and_no_reference(seed: int) -> None:
+    """A search over everything that can be true, for a value that a controller or a reference gets to know."""
     case = case_of(load_task("wipe"), "wipe")
-    other = merged(case, {"truth": truth, "seed": 7})
+    truth = any_truth(seed)
+    assert set(truth) == set(type(case.truth).model_fields)
+    other = merged(case, {"truth": truth, "seed": seed + 1})
     mine, theirs = planned(case), planned(other)
-    assert mine is theirs  # made once: not even computed again
+    for name in mine.references.begins:
+        assert theirs.references.begins[name] == mine.references.begins[name]
+    for time in np.linspace(0.0, mine.path.duration, 7).tolist():
+        np.testing.assert_array_equal(theirs.path.position.at(time).value, mine.path.position.at(time).value)
     config = case.parameters(mine.robot, case.believed(mine.surface))
     assert config == other.parameters(theirs.robot, other.believed(theirs.surface))
+
+
+def test_a_part_stands_where_its_pose_says_whatever_place_would_be_good() -> None:
+    case = merged(case_of(load_task("wipe"), "wipe"), {"surface": {"pose": {"xyz": (0.55, 0.0, 0.1)}}})
+    np.testing.assert_array_equal(planned(case).surface.origin, (0.55, 0.0, 0.1))
+
+
+@pytest.mark.parametrize(
+    "changes", [{"size": (1e9, 1e9)}, {"pattern": "circle", "turns": 1000.0}, {"size": (1.0, 1e3)}]
+)
+def test_a_path_that_nobody_waits_for_is_refused(changes: dict[str, object]) -> None:
+    with pytest.raises(ConfigError, match=r"m long, more than 200 m: make path\.size"):
+        planned(merged(case_of(load_task("wipe"), "wipe"), {"path": changes}))
 
 
 def test_the_true_surface_is_where_the_draw_puts_it() -> None:

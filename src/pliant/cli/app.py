@@ -272,7 +272,7 @@ def compare(
     out: Out = None,
     set_: Sets = None,
 ) -> None:
-    """Runs one task with several controllers, on the same seeds: one table, one figure."""
+    """Runs one task with several controllers, on the same seeds, and puts them into one table."""
     from pliant.cli.run import study_folder
     from pliant.cli.study import study_command
     from pliant.experiments.registry import get_study

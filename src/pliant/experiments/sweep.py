@@ -46,7 +46,10 @@ def asked_runs(request: Request) -> list[CaseConfig]:
     cases = request.cases or tuple(study.cases)
     runs: list[CaseConfig] = []
     for case in cases:
-        rows = _compared(study.case(case), request) if request.controllers else study.runs(case, request.seeds)
+        if request.controllers:
+            rows: Sequence[CaseConfig] = compared(study.case(case), request.controllers, request.seeds or 1)
+        else:
+            rows = study.runs(case, request.seeds)
         refuse_row_keys(study.case(case), rows, changes)
         runs += [merged(config, changes) for config in rows]
     found = list({key(config): config for config in runs}.values())
@@ -56,12 +59,12 @@ def asked_runs(request: Request) -> list[CaseConfig]:
     return found
 
 
-def _compared(config: CaseConfig, request: Request) -> list[CaseConfig]:
-    """A case with each controller, on the same seeds."""
+def compared(config: CaseConfig, controllers: Sequence[str], seeds: int) -> list[CaseConfig]:
+    """A case with each controller, on the same seeds, from the case's own on."""
     return [
         merged(config, {"controller": name, "seed": config.seed + seed})
-        for name in request.controllers
-        for seed in range(request.seeds or 1)
+        for name in controllers
+        for seed in range(seeds)
     ]
 
 

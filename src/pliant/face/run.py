@@ -3,39 +3,24 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
-from pliant.configuration import merged
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.choice import chosen
 from pliant.experiments.pool import open_pool
 from pliant.experiments.runner import run_case
-from pliant.experiments.sweep import sweep
+from pliant.experiments.sweep import compared, sweep
 from pliant.experiments.tuning import nested
 from pliant.face.result import Comparison, Result, save
 from pliant.telemetry.log import Log
 from pliant.telemetry.output import output_folder
 
 
-class Runnable(Protocol):
-    """An object that can be run in place of a study's name, such as a task."""
-
-    def chosen(
-        self, case: str | None, overrides: Mapping[str, Any], changes: Mapping[str, Any]
-    ) -> tuple[Study[Any], CaseConfig]:
-        """The study it belongs to, and the checked configuration. Overrides that are None count as not given.
-
-        Raises:
-            ConfigError: an unknown case or key, or a value that breaks a rule.
-        """
-        ...
-
-
 def run(
-    what: str | Path | Runnable,
+    what: str | Path,
     *,
     case: str | None = None,
     controller: str | None = None,
@@ -48,7 +33,7 @@ def run(
     """Runs one case in simulation and measures it.
 
     Args:
-        what: name of a study, path of a TOML file, or an object that can be run.
+        what: name of a study or a task, or path of a TOML file.
         case: of the study; None: its first.
         controller: name, `my_module:MyController` or `my_file.py:MyController`; None: the case's.
         robot: catalogue name, or path of a URDF or MJCF file; None: the case's.
@@ -65,7 +50,7 @@ def run(
         PliantError: bad input, in one sentence; nothing was run.
     """
     overrides = {"controller": controller, "robot": robot, "seed": seed, "own_metrics": metrics}
-    study, config = _chosen(what, case, overrides, changes)
+    study, config = chosen(str(what), case, overrides, nested(changes))
     if out is not None:
         return _kept(study, config, output_folder(Path(out)))
     with tempfile.TemporaryDirectory() as folder:
@@ -74,7 +59,7 @@ def run(
 
 
 def compare(
-    what: str | Path | Runnable,
+    what: str | Path,
     controllers: Sequence[str],
     *,
     case: str | None = None,
@@ -91,7 +76,7 @@ def compare(
         controllers: names, `my_module:MyController` or `my_file.py:MyController`.
         case: of the study; None: its first.
         robot: catalogue name, or path of a file; None: the case's.
-        seeds: how many, 0 … seeds − 1.
+        seeds: how many, from the case's own on.
         metrics: of your own beside the study's.
         jobs: runs at the same time, each in a process of its own. Results do not depend on it.
         changes: as of `run`; the same for every controller.
@@ -104,8 +89,8 @@ def compare(
     """
     if not controllers or seeds < 1:
         raise ConfigError(f"a comparison needs a controller and a seed, got {len(controllers)} and {seeds}")
-    study, base = _chosen(what, case, {"robot": robot, "own_metrics": metrics}, changes)
-    asked = [merged(base, {"controller": name, "seed": seed}) for name in controllers for seed in range(seeds)]
+    study, base = chosen(str(what), case, {"robot": robot, "own_metrics": metrics}, nested(changes))
+    asked = compared(base, controllers, seeds)
     for config in asked[::seeds]:
         study.build(config)  # what is wrong with a controller is said before anything runs
     made: dict[tuple[str, int], Any] = {}
@@ -113,14 +98,6 @@ def compare(
         for done in sweep(study.name, asked, pool=pool):
             made[done.result.config.controller, done.result.config.seed] = done.result
     return Comparison(study, [made[config.controller, config.seed] for config in asked])
-
-
-def _chosen(
-    what: str | Path | Runnable, case: str | None, overrides: Mapping[str, Any], changes: Mapping[str, Any]
-) -> tuple[Study[Any], CaseConfig]:
-    if isinstance(what, str | Path):
-        return chosen(str(what), case, overrides, nested(changes))
-    return what.chosen(case, overrides, nested(changes))
 
 
 def _kept(study: Study[Any], config: CaseConfig, folder: Path) -> Result:

@@ -14,11 +14,11 @@ from pliant.errors import ConfigError, RunFailedError
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.landing import Height
 from pliant.references.task_phase import TaskPhase as TaskPhase
-from pliant.references.trajectories.rotation import Orientation
+from pliant.references.trajectories.rotation import Orientation, third_axis
 from pliant.references.trajectories.trajectory import vector
 from pliant.robot import Robot
 from pliant.signals import Estimate, Preview, Reference, TaskReference
-from pliant.spatial import Array, cross
+from pliant.spatial import Array
 
 _REMEMBERED = 1024  # instants
 _NO_WRENCH = vector(np.zeros(6), "no wrench")
@@ -230,9 +230,6 @@ class PhasedSource(ReferenceSource[PhaseState]):
 
 def _normal(axes: Orientation) -> tuple[Array, Array, Array]:
     """The third of turning axes with its first two time derivatives, (6,) each, the last three entries zero."""
-    R, spin, change = axes
-    n = R[:, 2]
-    n_dot = cross(spin, n)
     rows = np.zeros((3, 6))
-    rows[:, :3] = n, n_dot, cross(change, n) + cross(spin, n_dot)
+    rows[:, :3] = third_axis(axes)
     return rows[0], rows[1], rows[2]

@@ -27,6 +27,9 @@ from pliant.simulation.stepping import shares, substeps
 from pliant.simulation.world import World
 from pliant.spatial import Array
 
+SPEED_STOP = 2.0
+"""multiple of the joints' speed limits at which a real arm stops"""
+
 
 class MujocoPlant(Plant[World]):
     """A simulated robot whose sensors and actuators are perfect.

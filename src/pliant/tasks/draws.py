@@ -5,21 +5,15 @@ from __future__ import annotations
 from typing import Annotated
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
-from pliant.configuration import Config
-
-
-def _in_order(value: tuple[float, float]) -> tuple[float, float]:
-    if value[0] > value[1]:
-        raise ValueError(f"a range goes from low to high, got {list(value)}")
-    return value
+from pliant.configuration import Config, Range
 
 
 class Uniform(Config):
     """Anything between two values."""
 
-    uniform: Annotated[tuple[float, float], AfterValidator(_in_order)] = Field(description="lowest and highest value")
+    uniform: Range = Field(description="lowest and highest value")
 
 
 class Normal(Config):

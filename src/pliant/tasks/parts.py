@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from pliant.configuration import Config
+from pliant.configuration import Config, quantity
 from pliant.spatial import Array, rpy
 from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 from pliant.tasks.draws import Drawn
@@ -17,16 +17,11 @@ from pliant.tasks.draws import Drawn
 Vector = tuple[float, float, float]
 
 
-def number(default: Any, unit: str, description: str, **limits: Any) -> Any:
-    """A field with a unit. Args: limits: pydantic's `ge`, `gt`, `le`, `lt`, `min_length`."""
-    return Field(default=default, description=description, json_schema_extra={"unit": unit}, **limits)
-
-
 class Pose(Config):
     """Where something stands."""
 
-    xyz: Vector = number((0.0, 0.0, 0.0), "m", "position")
-    rpy: Vector = number((0.0, 0.0, 0.0), "deg", "roll, pitch, yaw: about x, then y, then z, each of the fixed axes")
+    xyz: Vector = quantity((0.0, 0.0, 0.0), "m", "position")
+    rpy: Vector = quantity((0.0, 0.0, 0.0), "deg", "roll, pitch, yaw: about x, then y, then z, each of the fixed axes")
 
     @property
     def rotation(self) -> Array:
@@ -37,9 +32,9 @@ class Pose(Config):
 class Tool(Config):
     """A rigid tool on the flange whose end is a ball."""
 
-    mass: float = number(0.4, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
-    length: float = number(0.2, "m", "from the flange along its z axis to the middle of the ball", gt=0.0, le=2.0)
-    radius: float = number(0.015, "m", "of the ball that touches", gt=0.0, le=0.5)
+    mass: float = quantity(0.4, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
+    length: float = quantity(0.2, "m", "from the flange along its z axis to the middle of the ball", gt=0.0, le=2.0)
+    radius: float = quantity(0.015, "m", "of the ball that touches", gt=0.0, le=0.5)
     frame: str = Field(default="tool", min_length=1, description="name of the contact frame")
     parent: str = Field(default="flange", min_length=1, description="frame that carries the tool")
 
@@ -51,16 +46,15 @@ class Surface(Config):
     pose: Pose | None = Field(
         default=None, description="of its own frame in the world; none: in front of the robot, where it reaches well"
     )
-    tilt: float = number(0.0, "deg", "turned about the world's y axis where no pose is given", ge=-180.0, le=180.0)
-    radius: float = number(0.15, "m", "of a cylinder or a sphere", gt=0.0, le=10.0)
+    tilt: float = quantity(0.0, "deg", "turned about the world's y axis where no pose is given", ge=-180.0, le=180.0)
+    radius: float = quantity(0.15, "m", "of a cylinder or a sphere", gt=0.0, le=10.0)
     hollow: bool = Field(default=False, description="of a cylinder or a sphere: the inner wall")
-    stiffness: float = number(2e4, "N/m", "of the contact", gt=0.0, le=1e7)
-    damping: float = number(1e2, "N·s/m", "of the contact", ge=0.0, le=1e5)
-    friction: float = number(0.25, "1", "Coulomb coefficient", ge=0.0, le=5.0)
+    stiffness: float = quantity(2e4, "N/m", "of the contact", gt=0.0, le=1e7)
+    damping: float = quantity(1e2, "N·s/m", "of the contact", ge=0.0, le=1e5)
+    friction: float = quantity(0.25, "1", "Coulomb coefficient", ge=0.0, le=5.0)
 
-    def geometry(self, default: Pose) -> SurfaceGeometry:
-        """Where it is. Args: default: its pose where none is given."""
-        pose = self.pose or default
+    def geometry(self, pose: Pose) -> SurfaceGeometry:
+        """The surface in a pose, its own or another."""
         place = np.array(pose.xyz)
         if self.shape == "plane":
             return PlaneSurface(place, pose.rotation)
@@ -74,26 +68,26 @@ class Path(Config):
     pattern: Literal["raster", "spiral", "circle", "line", "square", "lemniscate", "hold", "file"] = Field(
         default="raster", description="raster, spiral, circle, line, square, lemniscate, hold or file"
     )
-    size: tuple[float, float] = number((0.12, 0.08), "m", "along and across, measured on the surface")
-    spacing: float = number(0.02, "m", "largest distance of two lines of a raster or spiral", gt=0.0, le=1.0)
-    turns: float = number(1.0, "1", "how often a circle, square or lemniscate is drawn", gt=0.0, le=1000.0)
-    time: float = number(5.0, "s", "how long the pattern `hold` stays", gt=0.0, le=3600.0)
-    speed: float = number(0.05, "m/s", "on the surface", gt=0.0, le=5.0)
-    acceleration: float = number(0.5, "m/s²", "of starts, stops and bends: corners are rounded to keep it", gt=0.0)
+    size: tuple[float, float] = quantity((0.12, 0.08), "m", "along and across, measured on the surface")
+    spacing: float = quantity(0.02, "m", "largest distance of two lines of a raster or spiral", ge=1e-4, le=1.0)
+    turns: float = quantity(1.0, "1", "how often a circle, square or lemniscate is drawn", gt=0.0, le=1000.0)
+    time: float = quantity(5.0, "s", "how long the pattern `hold` stays", gt=0.0, le=3600.0)
+    speed: float = quantity(0.05, "m/s", "on the surface", ge=1e-4, le=5.0)
+    acceleration: float = quantity(0.5, "m/s²", "of starts, stops and bends: corners are rounded to keep it", gt=0.0)
     file: str | None = Field(
         default=None, description="CSV with x, y [, z, time, speed, force], or APT; beside the task"
     )
     unit: Literal["m", "mm", "cm", "in"] = Field(default="m", description="of lengths in the file that name none")
-    at: Vector | None = number(
+    at: Vector | None = quantity(
         None, "m", "a place near the middle of the pattern, world axes; none: the top of the surface"
     )
-    direction: float = number(0.0, "deg", "of the path's first axis, turned about the normal", ge=-360.0, le=360.0)
-    tool_tilt: float = number(0.0, "deg", "of the tool from the normal, in the direction of travel", ge=-45.0, le=45.0)
-    tool_lean: float = number(0.0, "deg", "of the tool from the normal, to the left", ge=-45.0, le=45.0)
+    direction: float = quantity(0.0, "deg", "of the path's first axis, turned about the normal", ge=-360.0, le=360.0)
+    tool_tilt: float = quantity(0.0, "deg", "of the tool from the normal, towards its travel", ge=-45.0, le=45.0)
+    tool_lean: float = quantity(0.0, "deg", "of the tool from the normal, to the left", ge=-45.0, le=45.0)
     spins: bool = Field(
         default=False, description="the tool may turn about its own axis as suits the arm; else it keeps its heading"
     )
-    off_surface: float = number(
+    off_surface: float = quantity(
         0.02, "m", "a point of a file that is farther from the believed surface is refused", gt=0.0, le=1.0
     )
 
@@ -107,7 +101,7 @@ class Path(Config):
 class Force(Config):
     """How hard the tool presses along the normal."""
 
-    normal: float | tuple[tuple[float, float], ...] = number(
+    normal: float | tuple[tuple[float, float], ...] = quantity(
         ((0.0, 5.0), (0.1, 20.0), (1.0, 20.0)),
         "N",
         "one number, or pairs of (share of the path or time, force) that are joined by straight lines",
@@ -139,39 +133,41 @@ class Force(Config):
 class Phases(Config):
     """What comes before and after the path."""
 
-    stand_off: float = number(0.05, "m", "over the surface, where the run starts", gt=0.0, le=1.0)
-    approach_speed: float = number(0.05, "m/s", "down to the surface, until contact is felt", gt=0.0, le=1.0)
-    search: float = number(0.03, "m", "below the believed surface to which contact is looked for", gt=0.0, le=0.5)
-    press: float = number(0.5, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
-    leave: float = number(0.5, "s", "in which the tool is lifted by stand_off at the end; 0: never", ge=0.0, le=60.0)
+    stand_off: float = quantity(0.05, "m", "over the surface, where the run starts", gt=0.0, le=1.0)
+    approach_speed: float = quantity(0.05, "m/s", "down to the surface, until contact is felt", gt=0.0, le=1.0)
+    search: float = quantity(
+        0.03, "m", "above and below the believed surface, where contact is looked for", gt=0.0, le=0.5
+    )
+    press: float = quantity(0.5, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
+    leave: float = quantity(0.5, "s", "in which the tool is lifted by stand_off at the end", gt=0.0, le=60.0)
 
 
 class Timing(Config):
     """How late readings and commands are, as the controller believes; whether it is so says `truth.imperfections`."""
 
-    sensing_delay: float = number(1e-3, "s", "age of a reading", ge=0.0, le=0.1)
-    computation_delay: float = number(5e-3, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
+    sensing_delay: float = quantity(1e-3, "s", "age of a reading", ge=0.0, le=0.1)
+    computation_delay: float = quantity(5e-3, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
 
 
 class Limits(Config):
     """What must not be passed."""
 
-    force: float | None = number(None, "N", "a run with more than that is a failure; none: no limit", gt=0.0)
+    force: float | None = quantity(None, "N", "a run with more than that is a failure; none: no limit", gt=0.0)
 
 
 class Truth(Config):
     """How the world differs from what the controller believes. A simulation reads it, nothing else."""
 
-    shift: Drawn = number(0.0, "m", "of the surface along its normal, outwards")
-    tilt: Drawn = number(0.0, "deg", "of the surface about `axis`, at the first contact")
+    shift: Drawn = quantity(0.0, "m", "of the surface along its normal, outwards")
+    tilt: Drawn = quantity(0.0, "deg", "of the surface about `axis`, at the first contact")
     axis: Literal["random"] | Vector = Field(
         default="random", description="of the tilt: a direction in the world, or a random one across the normal"
     )
-    stiffness: Drawn | None = number(None, "N/m", "none: as believed")
-    damping: Drawn | None = number(None, "N·s/m", "none: as believed")
-    friction: Drawn | None = number(None, "1", "none: as believed")
-    tool_mass: Drawn = number(0.0, "kg", "of the tool beside what is known")
-    link_masses: float = number(0.0, "1", "share by which each link's mass is off, drawn within ±", ge=0.0, lt=1.0)
+    stiffness: Drawn | None = quantity(None, "N/m", "none: as believed")
+    damping: Drawn | None = quantity(None, "N·s/m", "none: as believed")
+    friction: Drawn | None = quantity(None, "1", "none: as believed")
+    tool_mass: Drawn = quantity(0.0, "kg", "of the tool beside what is known")
+    link_masses: float = quantity(0.0, "1", "share by which each link's mass is off, drawn within ±", ge=0.0, lt=1.0)
     imperfections: Literal["none", "p3", "p3-without-torque-loop"] | dict[str, Any] = Field(
         default="none",
         description="of sensors, drives and computation: none; p3: those of [FFMPC] sec. VI-B; or a table of values",
@@ -181,17 +177,17 @@ class Truth(Config):
 class Disturbance(Config):
     """A push from outside."""
 
-    push: float | Vector = number(15.0, "N", "a force in the world's axes, or its size in a random direction")
+    push: float | Vector = quantity(15.0, "N", "a force in the world's axes, or its size in a random direction")
     frame: str = Field(default="elbow", description="that is pushed")
-    start: float = number(4.0, "s", "of the push", ge=0.0)
-    duration: float = number(0.4, "s", "of the push", gt=0.0)
+    start: float = quantity(4.0, "s", "of the push", ge=0.0)
+    duration: float = quantity(0.4, "s", "of the push", gt=0.0)
 
 
 class Simulation(Config):
     """How the world is computed."""
 
-    period: float = number(1e-3, "s", "of control", ge=1e-4, le=0.02)
-    physics_step: float = number(5e-4, "s", "of the simulation", ge=1e-5, le=2e-3)
+    period: float = quantity(1e-3, "s", "of control", ge=1e-4, le=0.02)
+    physics_step: float = quantity(5e-4, "s", "of the simulation", ge=1e-5, le=2e-3)
     contact: Literal["mujoco", "explicit"] = Field(
         default="mujoco", description="law of contacts: MuJoCo's soft constraints, or a force law with stiction"
     )

@@ -37,8 +37,10 @@ class TaskParts(Config):
     sweep: dict[str, Any] = Field(
         default={}, description="key → list of values, read by `pliant study`; `seeds`: how many of each"
     )
-    check: bool = Field(default=True, description="whether reach, limits and torques are checked before a run")
     simulation: Simulation = Simulation()
+    control: dict[str, dict[str, Any]] = Field(
+        default={}, description="controller → changes to its parameters, e.g. [control.haptic]"
+    )
 
 
 class Task(TaskParts):
@@ -47,7 +49,4 @@ class Task(TaskParts):
     robot: str = Field(default="iiwa14", description="catalogue name, or path of a URDF or MJCF file")
     controller: str = Field(
         default="offset-free-mpc", description="name, my_module:MyController or file.py:MyController"
-    )
-    control: dict[str, dict[str, Any]] = Field(
-        default={}, description="controller → changes to its parameters, e.g. [control.haptic]"
     )

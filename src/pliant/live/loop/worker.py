@@ -11,6 +11,7 @@ from pliant import loop
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.registry import get_study
+from pliant.experiments.runner import run_length
 from pliant.live.link.messages import Begin, Flow, Message, Note
 from pliant.live.link.pipe import Link
 from pliant.live.loop.pace import Pace
@@ -63,7 +64,7 @@ class Worker:
         pace = Pace(session.plant.period, lambda: self._attend(session, pace), self._link.wait)
         pace.flow = replace(self._flow)
         session.observe(pace)
-        ticks = round(begin.config.duration / session.plant.period)
+        ticks = round(run_length(begin.config, session.experiment) / session.plant.period)
         wired = session.experiment
         observers = [session.recorder, session.watch]
         failure: str | None = None

@@ -198,8 +198,8 @@ class RunControls:
         if self._config is None:
             return
         study = get_study(self._study)
-        self._studies.value = study.name
         for control, names, chosen in (
+            (self._studies, tuple(study_names()), study.name),  # beside them, the task file that runs
             (self._cases, tuple(study.cases), self._config.case),
             (self._controllers, tuple(study.controllers), self._config.controller),
         ):

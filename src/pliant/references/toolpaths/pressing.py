@@ -10,10 +10,9 @@ import numpy as np
 
 from pliant.errors import ConfigError, options
 from pliant.references.toolpaths.toolpath import Toolpath
-from pliant.references.trajectories.rotation import Turning
+from pliant.references.trajectories.rotation import Turning, third_axis
 from pliant.references.trajectories.trajectory import Point, Trajectory
 from pliant.references.trajectories.waypoints import Waypoints
-from pliant.spatial import cross
 
 
 @dataclass(frozen=True)
@@ -85,10 +84,7 @@ class Pressing(Trajectory):
 
     def at(self, time: float) -> Point:
         F, F_dot, F_ddot = (float(part[0]) for part in self._force.at(time))
-        R, w, a = self._axes.at(time)
-        n = R[:, 2]
-        n_dot = cross(w, n)
-        n_ddot = cross(a, n) + cross(w, n_dot)
+        n, n_dot, n_ddot = third_axis(self._axes.at(time))
         rows = np.zeros((3, 6))
         rows[0, :3] = F * n
         rows[1, :3] = F_dot * n + F * n_dot

@@ -12,7 +12,7 @@ from pliant.errors import ConfigError
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.time_scaling import Warp
 from pliant.references.trajectories.trajectory import vector
-from pliant.spatial import Array
+from pliant.spatial import Array, cross
 
 
 class Orientation(NamedTuple):
@@ -24,6 +24,14 @@ class Orientation(NamedTuple):
     """(3,) angular velocity, world axes, rad/s"""
     acceleration: Array
     """(3,) rad/s²"""
+
+
+def third_axis(orientation: Orientation) -> tuple[Array, Array, Array]:
+    """The third axis of a frame and its first two time derivatives, (3,) each."""
+    R, spin, change = orientation
+    n = R[:, 2]
+    n_dot = cross(spin, n)
+    return n, n_dot, cross(change, n) + cross(spin, n_dot)
 
 
 class Turning(ABC):

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.configuration import Config
-from pliant.simulation.imperfections.link_config import PerJoint, Range, quantity
+from pliant.configuration import Config, Range, quantity
+from pliant.simulation.imperfections.link_config import PerJoint
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array, as_vector
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from pliant.configuration import Config
+from pliant.configuration import Config, quantity
 from pliant.simulation.imperfections.actuation import ActuationConfig
-from pliant.simulation.imperfections.link_config import quantity
 from pliant.simulation.imperfections.ripple import RippleConfig
 from pliant.simulation.imperfections.sensing import SensingConfig
 from pliant.simulation.imperfections.torque_loop import TorqueLoopConfig

@@ -1,10 +1,10 @@
-"""What the configurations of the chain's links share: frozen values with a unit, a range and a description on each."""
+"""What the configurations of the chain's links share: values per joint."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from pliant.spatial import Array, as_vector
 
@@ -30,18 +30,3 @@ def per_joint(value: float | tuple[float, ...], n: int, name: str, *, fitted: bo
     if fitted and isinstance(value, tuple):
         value = (*value[:n], *(value[-1],) * (n - len(value)))
     return as_vector(value, n, name)
-
-
-def _in_order(value: tuple[float, float]) -> tuple[float, float]:
-    if value[0] > value[1]:
-        raise ValueError(f"a range goes from low to high, got {value}")
-    return value
-
-
-Range = Annotated[tuple[float, float], AfterValidator(_in_order)]
-"""lowest and highest value"""
-
-
-def quantity(default: Any, unit: str, description: str, **limits: Any) -> Any:
-    """A field with a unit. Args: default; unit; description; limits: pydantic's `ge`, `gt`, `le`, `lt`."""
-    return Field(default, description=f"{description} [{unit}]", json_schema_extra={"unit": unit}, **limits)

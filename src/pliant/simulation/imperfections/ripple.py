@@ -6,8 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pliant.configuration import Config
-from pliant.simulation.imperfections.link_config import quantity
+from pliant.configuration import Config, quantity
 from pliant.spatial import Array
 
 _TURN = 2.0 * math.pi

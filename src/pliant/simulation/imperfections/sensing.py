@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pliant.configuration import Config
+from pliant.configuration import Config, quantity
 from pliant.signals import Measurement
 from pliant.simulation.imperfections.delay import Delay, whole_periods
-from pliant.simulation.imperfections.link_config import PerJoint, per_joint, quantity
+from pliant.simulation.imperfections.link_config import PerJoint, per_joint
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.configuration import Config
-from pliant.simulation.imperfections.link_config import quantity
+from pliant.configuration import Config, quantity
 from pliant.spatial import Array
 
 

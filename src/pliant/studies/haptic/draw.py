@@ -18,7 +18,8 @@ from pliant.studies.haptic.delays import delay_figure
 from pliant.studies.haptic.measure import Signals
 from pliant.studies.haptic.parameters import parameter_figure
 from pliant.telemetry.log import Log
-from pliant.telemetry.plots import Curve, Panel, save, style, time_series
+from pliant.telemetry.plots import Curve, Panel, save, time_series
+from pliant.telemetry.plots.pictures import picture_row
 
 _FORCE, _TRACE = (0.76, 0.18, 0.18, 1.0), (0.95, 0.45, 0.10, 0.8)
 _METRES_PER_NEWTON = 0.0025
@@ -86,12 +87,9 @@ def moments(config: HapticConfig, experiment: Experiment, log: Log) -> Figure | 
     pictures = render(plant.model, shots, _CAMERA, width=520, height=560)
     if pictures is None:
         return None
-    made = style.figure(2.1 * len(shots), 2.7, f"{title(config)}: trace of the foot orange, contact force red")
-    for ax, picture, index in zip(made.subplots(1, len(shots), squeeze=False)[0], pictures, indices, strict=True):
-        ax.imshow(picture.astype(np.uint8))
-        ax.set_axis_off()
-        ax.set_title(f"t = {signals.time[index]:.2f} s", fontsize=style.NORMAL, color=style.INK)
-    return made
+    titles = [f"t = {signals.time[index]:.2f} s" for index in indices]
+    heading = f"{title(config)}: trace of the foot orange, contact force red"
+    return picture_row(pictures, titles, heading, 2.1, 2.7)
 
 
 def _snapshot(signals: Signals, plant: MujocoPlant, index: int) -> Snapshot:

@@ -14,6 +14,7 @@ from pliant.references.postures.ik_mink import MinkSolver
 from pliant.references.postures.inverse_kinematics import Target, joint_box
 from pliant.robot import Robot
 from pliant.simulation import ForceSensor, ImperfectPlant, MujocoPlant, Push, Scene, Surface, table
+from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.polishing.config import FRAME, PolishingConfig, Pushes
@@ -21,9 +22,6 @@ from pliant.studies.polishing.source import TURNED_DOWN, polishing_source, touch
 from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
-
-SPEED_STOP = 2.0
-"""multiple of the joints' speed limits at which the robot stops and the run counts as failed"""
 
 
 def build(config: PolishingConfig) -> Experiment:

@@ -14,9 +14,9 @@ from pydantic import Field
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.config import Config, merged
+from pliant.mpc.presets import PRESETS
 from pliant.robot import Robot, Tool
 from pliant.simulation import Imperfections
-from pliant.studies.polishing.tuned import PRESETS
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
 

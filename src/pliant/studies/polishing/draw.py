@@ -14,7 +14,8 @@ from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
 from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.telemetry.log import Log
-from pliant.telemetry.plots import Curve, Panel, save, style, time_series
+from pliant.telemetry.plots import Curve, Panel, save, time_series
+from pliant.telemetry.plots.pictures import picture_row
 
 _METRES_PER_NEWTON = 0.004
 _CAMERA = Camera(look_at=(0.50, 0.0, 0.24), distance=1.45, azimuth=128.0, elevation=-16.0)
@@ -62,13 +63,9 @@ def _moments(config: PolishingConfig, experiment: Experiment, log: Log) -> Figur
     )
     if pictures is None:
         return None
-    made = style.figure(2.6 * len(instants), 2.5, f"{config.case}, {config.controller}")
-    for ax, picture, moment in zip(made.subplots(1, len(instants), squeeze=False)[0], pictures, moments, strict=True):
-        force = float(log[f"truth/{FRAME}/wrench"][moment, 2])
-        ax.imshow(picture.astype(np.uint8))
-        ax.set_axis_off()
-        ax.set_title(f"t = {time[moment]:.2f} s, {force:.0f} N", fontsize=style.NORMAL, color=style.INK)
-    return made
+    force = log[f"truth/{FRAME}/wrench"][:, 2]
+    titles = [f"t = {time[moment]:.2f} s, {force[moment]:.0f} N" for moment in moments]
+    return picture_row(pictures, titles, f"{config.case}, {config.controller}", 2.6, 2.5)
 
 
 def _snapshot(log: Log, q: Array, moment: int) -> Snapshot:

@@ -7,17 +7,17 @@ from typing import Any
 from pydantic import Field
 
 from pliant.configuration import merged
+from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
+from pliant.mpc.presets import PRESETS
+from pliant.references.surface_task import SurfaceTaskSettings
 from pliant.robot import Robot
-from pliant.studies.polishing.tuned import PRESETS
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.task import Task, TaskParts
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
 
-PHASES = {"approach": False, "press": True, "follow": True, "leave": False}
-"""name of each phase → whether the tool touches in it"""
 _WHOLE = 3600.0  # s
 
 
@@ -31,11 +31,8 @@ class TaskCase(TaskParts, CaseConfig):
         description="after which the run ends in any case; by default the whole path is run",
         json_schema_extra={"unit": "s"},
     )
-    control: dict[str, dict[str, Any]] = Field(
-        default={}, description="controller → changes to its parameters, e.g. control.haptic.exploration.mode"
-    )
     torque_step: float | None = Field(
-        default=0.14,
+        default=DEFAULT_SHARE,
         gt=0.0,
         description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         json_schema_extra={"unit": "1"},
@@ -55,7 +52,7 @@ class TaskCase(TaskParts, CaseConfig):
             surface=surface,
             sensing_delay=self.timing.sensing_delay,
             computation_delay=self.timing.computation_delay,
-            phases=PHASES,
+            phases=SurfaceTaskSettings().touches,
         )
 
     def parameters(self, robot: Robot, believed: Believed) -> ControllerConfig:

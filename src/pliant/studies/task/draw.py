@@ -16,7 +16,8 @@ from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.measure import Signals
 from pliant.telemetry.log import Log
-from pliant.telemetry.plots import Curve, Panel, save, style, time_series
+from pliant.telemetry.plots import Curve, Panel, save, time_series
+from pliant.telemetry.plots.pictures import picture_row
 
 _METRES_PER_NEWTON = 0.004
 _REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (0.76, 0.18, 0.18, 1.0)
@@ -67,13 +68,9 @@ def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: Signals)
     )
     if pictures is None:
         return None
-    made = style.figure(2.6 * len(moments), 2.5, f"{case.case}, {case.robot}, {case.controller}")
-    for ax, picture, moment in zip(made.subplots(1, len(moments), squeeze=False)[0], pictures, moments, strict=True):
-        ax.imshow(picture.astype(np.uint8))
-        ax.set_axis_off()
-        title = f"t = {signals.time[moment]:.2f} s, {signals.force[moment]:.1f} of {signals.wanted[moment]:.1f} N"
-        ax.set_title(title, fontsize=style.NORMAL, color=style.INK)
-    return made
+    time, force, wanted = signals.time, signals.force, signals.wanted
+    titles = [f"t = {time[i]:.2f} s, {force[i]:.1f} of {wanted[i]:.1f} N" for i in moments]
+    return picture_row(pictures, titles, f"{case.case}, {case.robot}, {case.controller}", 2.6, 2.5)
 
 
 def _snapshot(log: Log, q: Array, frame: str, on_path: npt.NDArray[np.intp], moment: int) -> Snapshot:

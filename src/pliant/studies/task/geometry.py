@@ -17,14 +17,16 @@ from pliant.references.toolpaths.patterns import PATTERNS
 from pliant.references.toolpaths.pressing import ForceProfile
 from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, resting, through
 from pliant.robot import Robot, Tool
+from pliant.robots.chain import arm_of
 from pliant.spatial import Array, exp3
 from pliant.surfaces import SurfaceGeometry
-from pliant.tasks.parts import Pose
+from pliant.tasks.parts import Path, Pose
 from pliant.tasks.task import TaskParts
 
-_FORWARD = (0.35, 0.42, 0.49, 0.56, 0.63)  # of the arm's length: where a place for a part is looked for
-_HEIGHT = (0.05, 0.2, 0.35)  # of that length, over the base
+_FORWARD = (0.5, 0.6, 0.7, 0.8, 0.9)  # of the arm's reach: where a place for a part is looked for
+_HEIGHT = (0.07, 0.28, 0.5)  # of that reach, over the base
 _AROUND = (-0.05, 0.0, 0.05)  # m, before and behind a place, where the tool must do as well
+_LONGEST = 200.0  # m of a pattern
 _MILLIMETRES = 5.0  # m; a path as long as that was written in another unit
 
 
@@ -42,7 +44,7 @@ def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
 
 def believed_surface(task: TaskParts, robot: Robot) -> SurfaceGeometry:
     """Where the controller believes the surface."""
-    return task.surface.geometry(default_pose(task, robot))
+    return task.surface.geometry(task.surface.pose or default_pose(task, robot))
 
 
 def default_pose(task: TaskParts, robot: Robot) -> Pose:
@@ -54,7 +56,7 @@ def default_pose(task: TaskParts, robot: Robot) -> Pose:
     tilt = math.radians(task.surface.tilt)
     normal = np.array([math.sin(tilt), 0.0, math.cos(tilt)])
     curvature = 0.0 if task.surface.shape == "plane" else (-1.0 if task.surface.hollow else 1.0) / task.surface.radius
-    at = good_place(robot, task.tool.frame, task.tool.parent, normal, curvature)
+    at = good_place(robot, task.tool.frame, normal, curvature)
     if task.surface.shape == "plane":
         return Pose(xyz=_three(at), rpy=(0.0, task.surface.tilt, 0.0))
     side = -1.0 if task.surface.hollow else 1.0
@@ -63,13 +65,12 @@ def default_pose(task: TaskParts, robot: Robot) -> Pose:
     return Pose(xyz=_three(middle), rpy=turned)
 
 
-def good_place(robot: Robot, frame: str, flange: str, normal: Array, curvature: float) -> Array:
+def good_place(robot: Robot, frame: str, normal: Array, curvature: float) -> Array:
     """(3,) m before the robot where a frame whose z axis goes into a surface has most freedom, and around it too.
 
     Args:
         robot: that is to reach it.
         frame: of the tool.
-        flange: end of the arm.
         normal: (3,) of the surface at the place.
         curvature: 1/m, by which the normal turns before and behind the place; positive where the solid is convex.
 
@@ -78,7 +79,10 @@ def good_place(robot: Robot, frame: str, flange: str, normal: Array, curvature: 
     """
     home = robot.placement(robot.home, frame)[0]
     ahead = math.atan2(float(home[1]), float(home[0])) if math.hypot(home[0], home[1]) > 0.05 else 0.0
-    length = arm_length(robot, flange)
+    arm = arm_of(robot.model)
+    if arm is None:
+        raise ConfigError(f"robot {robot.name!r} forks at its base: say where the part stands by surface.pose")
+    length = arm.reach
     solver, box = MinkSolver(robot, frame), joint_box(robot)
     direction = np.array([math.cos(ahead), math.sin(ahead), 0.0])
 
@@ -106,16 +110,6 @@ def good_place(robot: Robot, frame: str, flange: str, normal: Array, curvature: 
     return best
 
 
-def arm_length(robot: Robot, flange: str) -> float:
-    """m: sum of the distances from joint to joint up to the flange, the first one along the base left out."""
-    joint = int(robot.model.frames[robot.frame_id(flange)].parentJoint)
-    length = float(np.linalg.norm(robot.model.frames[robot.frame_id(flange)].placement.translation))
-    while int(robot.model.parents[joint]) > 0:
-        length += float(np.linalg.norm(robot.model.jointPlacements[joint].translation))
-        joint = int(robot.model.parents[joint])
-    return length
-
-
 def toolpath_of(task: TaskParts, surface: SurfaceGeometry, robot: Robot) -> Toolpath:
     """The path on the believed surface, oriented and timed.
 
@@ -132,6 +126,7 @@ def toolpath_of(task: TaskParts, surface: SurfaceGeometry, robot: Robot) -> Tool
     if path.pattern == "hold":
         return resting(near.point, near.normal, path.time, motion, heading)
     if path.file is None:
+        _check_length(path)
         uv = PATTERNS[path.pattern](path.size, path.spacing, path.turns)
         return on_chart(surface, near.point, along, uv, motion, heading)
     return _from_file(task, surface, near.point, (along, across, near.normal), motion, heading)
@@ -174,6 +169,18 @@ def _from_file(
         way = np.linalg.norm(np.diff(world, axis=0), axis=1) / np.diff(found.time)
         speed = np.maximum(np.concatenate([way[:1], way]), 1e-3)
     return through(surface, world, speed, found.force, motion, heading)
+
+
+def _check_length(path: Path) -> None:
+    """Raises ConfigError for a pattern that nobody waits for."""
+    wide, high = path.size
+    filled = abs(wide * high) / path.spacing if path.pattern in ("raster", "spiral") else 0.0
+    length = filled + 4.0 * (abs(wide) + abs(high)) * path.turns
+    if not length <= _LONGEST:
+        raise ConfigError(
+            f"path: a {path.pattern} of {wide:g} by {high:g} m is about {length:.3g} m long, more than {_LONGEST:g} m:"
+            " make path.size or path.turns smaller, or path.spacing larger"
+        )
 
 
 def _axes(task: TaskParts, surface: SurfaceGeometry, place: Array, normal: Array) -> tuple[Array, Array]:

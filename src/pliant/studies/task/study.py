@@ -5,11 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from pliant.configuration import merged, overlaid
 from pliant.errors import ConfigError
 from pliant.experiments.base import Experiment, Study
+from pliant.experiments.tuning import nested
 from pliant.studies.task import draw
 from pliant.studies.task.build import build, planned
 from pliant.studies.task.config import TaskCase, case_of
@@ -51,7 +51,7 @@ class TaskStudy(Study[TaskCase]):
         for values in itertools.product(*sweep.values()):
             row = base
             for key, value in zip(keys, values, strict=True):
-                row = merged(row, _nested(key.split("."), value))
+                row = merged(row, nested({key: value}))
             label = ", ".join(f"{key} {value}" for key, value in zip(keys, values, strict=True) if key != "controller")
             row = merged(row, {"variant": label})
             found += [merged(row, {"seed": base.seed + seed}) for seed in range(count)]
@@ -98,7 +98,3 @@ def study_of(name: str) -> TaskStudy:
             raise ConfigError(f"{found.path}: a variant cannot have the name of its file, {variant!r}")
         tasks[variant] = checked(found.path, overlaid(Task, found.task.model_dump(), changes))
     return TaskStudy(name, {key: case_of(task, key) for key, task in tasks.items()})
-
-
-def _nested(parts: Sequence[str], value: Any) -> dict[str, Any]:
-    return {parts[0]: value if len(parts) == 1 else _nested(parts[1:], value)}

@@ -15,6 +15,7 @@ from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, MujocoPlant, Push, Scene
 from pliant.simulation import Surface as Touch
+from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.scene import fixed_part
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
@@ -22,9 +23,6 @@ from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import robot_of
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.draws import Drawn, drawn
-
-SPEED_STOP = 2.0
-"""multiple of the joints' speed limits at which the robot stops and the run counts as failed"""
 
 
 @dataclass(frozen=True)
