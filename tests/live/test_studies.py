@@ -15,7 +15,7 @@ from pliant.live.link.messages import Aim, Message, Note, Parameters, Ready
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.session import Session
 from pliant.live.loop.steered_source import TARGET_SPEED
-from pliant.live.loop.tuning import online_fields, parameters_of
+from pliant.live.loop.tuning import online_fields, online_group, parameters_of
 from pliant.signals import Tick
 
 
@@ -88,3 +88,18 @@ def test_every_study_offers_something_to_turn() -> None:
     for name in set(study_names()) - {"toy"}:  # tests/studies/toy.py puts itself among them
         for config in get_study(name).cases.values():
             assert parameters_of(config) is not None or online_fields(config), f"{name} {config.case}"
+
+
+def test_a_task_file_is_steered_like_a_study() -> None:
+    """The loop of the page runs a task by its name; asked for half the force, half of it is asked for."""
+
+    case = get_study("press").case("press")
+    assert parameters_of(case) is None  # of a task the page turns none
+    assert online_group(case).entries == ()
+
+    def asked(asks: Sequence[Any]) -> float:
+        seen, said = steer("press", "press", 2400, 2300, asks)
+        assert any(isinstance(message, Ready) for message in said)
+        return float(np.linalg.norm(seen[-1].reference.tasks[0].wrench[:3]))
+
+    assert asked([Aim((0.0, 0.0, 0.0), 0.5)]) == pytest.approx(0.5 * asked([]), rel=1e-6)

@@ -123,8 +123,8 @@ def test_what_is_true_changes_no_parameter_and_no_reference(seed: int) -> None:
         assert theirs.references.begins[name] == mine.references.begins[name]
     for time in np.linspace(0.0, mine.path.duration, 7).tolist():
         np.testing.assert_array_equal(theirs.path.position.at(time).value, mine.path.position.at(time).value)
-    config = case.parameters(mine.robot, case.believed(mine.surface))
-    assert config == other.parameters(theirs.robot, other.believed(theirs.surface))
+    config = case.controller_parameters(mine.robot, case.believed(mine.surface))
+    assert config == other.controller_parameters(theirs.robot, other.believed(theirs.surface))
 
 
 def test_a_part_stands_where_its_pose_says_whatever_place_would_be_good() -> None:

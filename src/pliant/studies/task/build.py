@@ -73,4 +73,4 @@ def build(case: TaskCase) -> Experiment:
         joint_limits=case.joint_limits,
         duration=made.references.longest,
     )
-    return wired(case.entry, case.parameters(robot, believed), offer)
+    return wired(case.entry, case.controller_parameters(robot, believed), offer)

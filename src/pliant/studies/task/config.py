@@ -55,7 +55,7 @@ class TaskCase(TaskParts, CaseConfig):
             phases=SurfaceTaskSettings().touches,
         )
 
-    def parameters(self, robot: Robot, believed: Believed) -> ControllerConfig:
+    def controller_parameters(self, robot: Robot, believed: Believed) -> ControllerConfig:
         """The controller's parameters: its defaults, weights tuned for a late or a prompt loop, what suits the task,
         then `control`."""
         entry = self.entry
