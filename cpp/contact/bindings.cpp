@@ -76,14 +76,15 @@ class ContactLoop {
     return world_.evaluate(views_, dt, push.data(), bristles.data(), {force.data(), point.data(), penetration.data()});
   }
 
-  int advance(int count, double dt, const Constants& push, const Doubles& bristles, const Doubles& force, const Doubles& point,
-              const Doubles& penetration) const {
+  int advance(int count, double dt, const Constants& push, const Doubles& bristles, const Doubles& force,
+              const Doubles& point, const Doubles& penetration) const {
     check(push, bristles, force, point, penetration);
     const Output out{force.data(), point.data(), penetration.data()};
     const double* push_data = push.data();
     double* bristle_data = bristles.data();
     nb::gil_scoped_release release;
-    return world_.advance(views_, step1_, step2_, model_address_, data_address_, count, dt, push_data, bristle_data, out);
+    return world_.advance(views_, step1_, step2_, model_address_, data_address_, count, dt, push_data, bristle_data,
+                          out);
   }
 
  private:
@@ -115,6 +116,6 @@ NB_MODULE(_contact, m) {
       .def_prop_ro("slots", &ContactLoop::slots)
       .def("evaluate", &ContactLoop::evaluate, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
            "point"_a.noconvert(), "penetration"_a.noconvert())
-      .def("advance", &ContactLoop::advance, "count"_a, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
-           "point"_a.noconvert(), "penetration"_a.noconvert());
+      .def("advance", &ContactLoop::advance, "count"_a, "dt"_a, "push"_a, "bristles"_a.noconvert(),
+           "force"_a.noconvert(), "point"_a.noconvert(), "penetration"_a.noconvert());
 }

@@ -9,9 +9,9 @@
 namespace pliant::contact {
 
 struct Material {
-  double stiffness;             // K, N/m
-  double damping;               // D, N s/m
-  double transition;            // m of penetration over which the force fades in
+  double stiffness;   // K, N/m
+  double damping;     // D, N s/m
+  double transition;  // m of penetration over which the force fades in
   double mu_static;
   double mu_dynamic;
   double critical_velocity;     // v_c, m/s of sliding at which friction falls from static to dynamic
@@ -21,14 +21,14 @@ struct Material {
 
 // Memory of one contact point.
 struct Bristle {
-  Vec3 deflection;        // m, in the tangent plane, of body A against body B
-  double coefficient;     // friction coefficient in force now
-  double sliding;         // 1 if the bristle gave way in the last step, else 0
+  Vec3 deflection;     // m, in the tangent plane, of body A against body B
+  double coefficient;  // friction coefficient in force now
+  double sliding;      // 1 if the bristle gave way in the last step, else 0
 };
 constexpr int kBristleSize = 5;
 
-// The coefficient follows its target with this time constant, divided by 1 + |v|/v_c. Without the lag, breaking away and
-// sticking again alternate from one step to the next and the force has jumps of (mu_s - mu_d) F_n.
+// The coefficient follows its target with this time constant, divided by 1 + |v|/v_c. Without the lag, breaking away
+// and sticking again alternate from one step to the next and the force has jumps of (mu_s - mu_d) F_n.
 constexpr double kCoefficientTime = 1e-3;  // s
 
 inline double smoothstep(double u) {
@@ -58,10 +58,10 @@ inline double target_coefficient(const Material& m, const Bristle& b, double spe
   return m.mu_dynamic + (m.mu_static - m.mu_dynamic) * std::exp(-ratio * ratio);
 }
 
-// Friction on body A, N, and the bristle's next state. The bristle is an elastic-plastic spring: below the limit it only
-// stretches, so a constant load creeps by nothing at all; at the limit it is carried along and dissipates.
-inline Vec3 friction_force(const Material& m, const Vec3& normal, double force_normal, const Vec3& slip_velocity, double dt,
-                           Bristle& b) {
+// Friction on body A, N, and the bristle's next state. The bristle is an elastic-plastic spring: below the limit it
+// only stretches, so a constant load creeps by nothing at all; at the limit it is carried along and dissipates.
+inline Vec3 friction_force(const Material& m, const Vec3& normal, double force_normal, const Vec3& slip_velocity,
+                           double dt, Bristle& b) {
   const Vec3 tangential = slip_velocity - dot(slip_velocity, normal) * normal;
   const double speed = norm(tangential);
   const double rate = (1.0 + speed / m.critical_velocity) / kCoefficientTime;

@@ -23,8 +23,8 @@ Touch against_plane(const Ball& ball, const Shape& plane) {
   return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
 }
 
-// A sphere about its centre, or a cylinder about its axis, from outside or from within. Args: apart: from the centre or the
-// axis to the ball.
+// A sphere about its centre, or a cylinder about its axis, from outside or from within. Args: apart: from the centre or
+// the axis to the ball.
 Touch against_round(const Ball& ball, const Shape& b, const Vec3& apart) {
   const double distance = norm(apart), side = b.hollow ? -1.0 : 1.0;
   const Vec3 normal = side * (distance > kTiny ? (1.0 / distance) * apart : b.rotation.column(0));
@@ -91,7 +91,8 @@ void insert_sorted(std::array<double, 8>& list, int& count, double value) {
   list[at] = value;
 }
 
-// Parameter in [0, 1] of the point of a segment nearest to a box, both in the box's axes; the middle one if there are many.
+// Parameter in [0, 1] of the point of a segment nearest to a box, both in the box's axes; the middle one if there are
+// many.
 double nearest_on_segment(const Vec3& a, const Vec3& d, const Vec3& half) {
   std::array<double, 8> t{0.0, 1.0};
   int count = 2;
@@ -117,7 +118,8 @@ Ball ball_of_corner(const Shape& a, int corner) {
 // The point of a capsule's axis that matters for B, with the capsule's radius.
 Ball ball_of_capsule(const Shape& a, const Shape& b, int slot) {
   const Vec3 half_axis = a.size.y * a.rotation.column(2);
-  if (b.type == ShapeType::kPlane || b.hollow) return {slot == 0 ? a.position - half_axis : a.position + half_axis, a.size.x};
+  if (b.type == ShapeType::kPlane || b.hollow)
+    return {slot == 0 ? a.position - half_axis : a.position + half_axis, a.size.x};
   const Vec3 start = a.position - half_axis;
   const Vec3 along = 2.0 * half_axis;
   double t = 0.0;
@@ -148,15 +150,25 @@ int slot_count(ShapeType a, ShapeType b, bool hollow) {
 Touch touch(const Shape& a, const Shape& b, int slot) {
   Ball ball{};
   switch (a.type) {
-    case ShapeType::kBox: ball = ball_of_corner(a, slot); break;
-    case ShapeType::kCapsule: ball = ball_of_capsule(a, b, slot); break;
-    default: ball = ball_of_sphere(a); break;
+    case ShapeType::kBox:
+      ball = ball_of_corner(a, slot);
+      break;
+    case ShapeType::kCapsule:
+      ball = ball_of_capsule(a, b, slot);
+      break;
+    default:
+      ball = ball_of_sphere(a);
+      break;
   }
   switch (b.type) {
-    case ShapeType::kPlane: return against_plane(ball, b);
-    case ShapeType::kSphere: return against_sphere(ball, b);
-    case ShapeType::kCylinder: return against_cylinder(ball, b);
-    default: return against_box(ball, b);
+    case ShapeType::kPlane:
+      return against_plane(ball, b);
+    case ShapeType::kSphere:
+      return against_sphere(ball, b);
+    case ShapeType::kCylinder:
+      return against_cylinder(ball, b);
+    default:
+      return against_box(ball, b);
   }
 }
 

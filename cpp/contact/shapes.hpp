@@ -9,10 +9,10 @@ enum class ShapeType : int { kPlane = 0, kSphere = 2, kCapsule = 3, kCylinder = 
 
 struct Shape {
   ShapeType type;
-  Vec3 size;         // sphere, cylinder: radius; capsule: radius, half length along local z; box: half extents; plane: unused
-  Vec3 position;     // m, world
-  Rotation rotation; // R_world_shape
-  bool hollow;       // of B, a sphere or cylinder: the material is outside of it
+  Vec3 size;  // sphere, cylinder: radius; capsule: radius, half length along local z; box: half extents; plane: unused
+  Vec3 position;      // m, world
+  Rotation rotation;  // R_world_shape
+  bool hollow;        // of B, a sphere or cylinder: the material is outside of it
 };
 
 struct Touch {
@@ -21,9 +21,9 @@ struct Touch {
   double penetration;  // m, above zero where the shapes overlap
 };
 
-// How many contact points a pair can have; 0 where the pair is not supported. A is a sphere, capsule or box, B a plane, box,
-// sphere, or cylinder without ends. On a plane and in a hollow B a box acts through its eight corners, a capsule through its
-// two ends; a box does not act on a round B from outside.
+// How many contact points a pair can have; 0 where the pair is not supported. A is a sphere, capsule or box, B a plane,
+// box, sphere, or cylinder without ends. On a plane and in a hollow B a box acts through its eight corners, a capsule
+// through its two ends; a box does not act on a round B from outside.
 int slot_count(ShapeType a, ShapeType b, bool hollow);
 
 // The contact point number `slot` of a pair.

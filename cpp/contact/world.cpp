@@ -5,7 +5,8 @@
 namespace pliant::contact {
 namespace {
 
-// Anything above is a simulation that has blown up. MuJoCo has limits of its own, far higher, and writes a file when it meets them.
+// Anything above is a simulation that has blown up. MuJoCo has limits of its own, far higher, and writes a file when it
+// meets them.
 constexpr double kFastest = 1e4;    // m/s or rad/s
 constexpr double kStrongest = 1e7;  // N
 
@@ -36,8 +37,8 @@ bool velocities_sound(const Views& v) {
 }  // namespace
 
 int World::add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow) {
-  const int slots =
-      slot_count(static_cast<ShapeType>(views.geom_type[geom_a]), static_cast<ShapeType>(views.geom_type[geom_b]), hollow);
+  const int slots = slot_count(static_cast<ShapeType>(views.geom_type[geom_a]),
+                               static_cast<ShapeType>(views.geom_type[geom_b]), hollow);
   if (slots == 0) return -1;
   const int first = slots_;
   pairs_.push_back({geom_a, geom_b, material, hollow, first, slots});
@@ -74,8 +75,8 @@ bool World::evaluate(const Views& v, double dt, const double* push, double* bris
   return sound;
 }
 
-int World::advance(const Views& views, HalfStep step1, HalfStep step2, const void* model, void* data, int count, double dt,
-                   const double* push, double* bristles, const Output& out) const {
+int World::advance(const Views& views, HalfStep step1, HalfStep step2, const void* model, void* data, int count,
+                   double dt, const double* push, double* bristles, const Output& out) const {
   if (!velocities_sound(views)) return 0;
   for (int done = 0; done < count; ++done) {
     step1(model, data);

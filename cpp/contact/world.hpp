@@ -52,7 +52,8 @@ class World {
   // Returns false if a force is absurd or not finite.
   bool evaluate(const Views& views, double dt, const double* push, double* bristles, const Output& out) const;
 
-  // `count` steps of dt. Returns how many were completed: fewer than `count` if a force or a velocity is absurd or not finite.
+  // `count` steps of dt. Returns how many were completed: fewer than `count` if a force or a velocity is absurd or not
+  // finite.
   int advance(const Views& views, HalfStep step1, HalfStep step2, const void* model, void* data, int count, double dt,
               const double* push, double* bristles, const Output& out) const;
 

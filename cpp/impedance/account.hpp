@@ -1,5 +1,5 @@
-// The passivity account of one axis: what its sampled force took in beyond what the profile stores, and how much of that
-// the next force may spend.
+// The passivity account of one axis: what its sampled force took in beyond what the profile stores, and how much of
+// that the next force may spend.
 //
 // Over a period the held force h takes in h d, with d the motion of the error, and the profile stores E(error). The
 // difference is booked at the next tick, so that sampling, blending, clamps, step limits and changes of the tuning are
@@ -67,7 +67,8 @@ inline void add_outside(const AccountConfig& c, AccountState& a, double income) 
   add(c, a, income + paid);
 }
 
-// Books the last period. A target that moves the error by r supplies h r, or what the profile stores more if that is more.
+// Books the last period. A target that moves the error by r supplies h r, or what the profile stores more if that is
+// more.
 inline void book(const AccountConfig& c, Shape shape, const Axis& p, AccountState& a, const Motion& m) {
   const double stored = energy(shape, p, m.error);
   const double target = m.error - m.robot;
@@ -106,7 +107,8 @@ inline Budget budget(Shape shape, const Axis& p, const AccountState& a, double e
 inline double clamped(double x, double bound) { return std::min(std::max(x, -bound), bound); }
 
 // The force nearest to the wanted one that the account allows.
-inline double allowed_force(const AccountConfig& c, const Axis& p, AccountState& a, const Budget& b, double h, bool rotates) {
+inline double allowed_force(const AccountConfig& c, const Axis& p, AccountState& a, const Budget& b, double h,
+                            bool rotates) {
   if (b.step != 0.0) {
     const double repay = std::min(std::max(-b.balance, 0.0), c.damping * p.stiffness * b.step * b.step);
     const double need = b.gain - c.spend * std::max(b.balance, 0.0) + repay;

@@ -34,8 +34,9 @@ struct AxisState {
   AccountState account;
 };
 
-// Rate and noise from differences of the error. The third difference of a smooth motion is negligible, that of white noise
-// has 20 times its variance; outliers (a step of the reference, an impact) are clipped to three standard deviations.
+// Rate and noise from differences of the error. The third difference of a smooth motion is negligible, that of white
+// noise has 20 times its variance; outliers (a step of the reference, an impact) are clipped to three standard
+// deviations.
 inline void update_rate(const AttractorConfig& c, AxisState& s, double error, double rate_floor) {
   const double third = error - 3.0 * s.error + 3.0 * s.error_2 - s.error_3;
   const double deviation = rate_floor / (3.0 * c.noise_to_rate);
@@ -97,9 +98,10 @@ inline double law_force(const AttractorConfig& c, Shape shape, const Axis& p, co
   return converging_force(c.law, shape, p, error, s.turning);
 }
 
-// The force of the law, less what is still missing of the step that it makes where convergence ends. `left` says whether
-// convergence ended at this tick; s.force is still the force of the last one.
-inline double blended_force(const AttractorConfig& c, Shape shape, const Axis& p, AxisState& s, double error, bool left) {
+// The force of the law, less what is still missing of the step that it makes where convergence ends. `left` says
+// whether convergence ended at this tick; s.force is still the force of the last one.
+inline double blended_force(const AttractorConfig& c, Shape shape, const Axis& p, AxisState& s, double error,
+                            bool left) {
   const double law = law_force(c, shape, p, s, error);
   if (left) {
     s.gap = law - s.force;

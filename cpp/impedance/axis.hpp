@@ -23,15 +23,15 @@ inline void push_error(AxisState& s, double error) {
 }
 
 // Books the work of the force held since the last tick. `absorbed` is the ledger's, the account has its own book.
-inline void book_motion(const AxisConfig& c, Shape shape, const Axis& p, AxisState& s, double error, const AxisMotion& m,
-                        double rate_floor) {
+inline void book_motion(const AxisConfig& c, Shape shape, const Axis& p, AxisState& s, double error,
+                        const AxisMotion& m, double rate_floor) {
   s.absorbed += s.force * (error - s.error);
   if (c.account.active) book(c.account, shape, p, s.account, {s.error, m.robot, error, s.force, m.work});
   update_rate(c.attractor, s, error, rate_floor);
 }
 
-// Another branch of the logarithm, or another set of axes: no motion of the error. `by_target` says that the target made
-// the change, and supplies what is stored more.
+// Another branch of the logarithm, or another set of axes: no motion of the error. `by_target` says that the target
+// made the change, and supplies what is stored more.
 inline void restart(const AxisConfig& c, Shape shape, const Axis& p, AxisState& s, double error, double work,
                     bool by_target) {
   const double stored = energy(shape, p, error);

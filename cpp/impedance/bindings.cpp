@@ -47,9 +47,7 @@ void read_pose(nb::handle position, nb::handle rotation, bool needs_rotation, Po
   }
 }
 
-bool finite(const Pose& pose) {
-  return finite(pose.position, 3) && (!pose.oriented || finite(pose.rotation, 9));
-}
+bool finite(const Pose& pose) { return finite(pose.position, 3) && (!pose.oriented || finite(pose.rotation, 9)); }
 
 // 0, or which input is not finite: 1 for q, 100 + i for the frame of task i, 200 + i for its reference.
 int read_tasks(Stack& stack, nb::tuple actual, nb::tuple desired) {
@@ -93,7 +91,8 @@ int step(Stack& stack, Vector memory, Vector out, ConstVector q, ConstMatrix J, 
       stack.input()[task].retune = values.data();
     }
   }
-  stack.step(memory.data(), out.data(), q.data(), J.data(), bias.is_none() ? nullptr : bias_array.data(), stack.input());
+  stack.step(memory.data(), out.data(), q.data(), J.data(), bias.is_none() ? nullptr : bias_array.data(),
+             stack.input());
   return 0;
 }
 
@@ -162,7 +161,8 @@ void drive_axis(const std::string& law, double period, double rate_gain, double 
   const Axis axis = make_axis(form, t[0], t[1], t[2], t[3]);
   const auto steps = static_cast<int>(errors.shape(0)), trials = static_cast<int>(errors.shape(1));
   for (int i = 0; i < trials; ++i) {
-    drive(config, form, axis, rate_floor, rotates, errors.data() + i, forces.data() + i, balances.data() + i, steps, trials);
+    drive(config, form, axis, rate_floor, rotates, errors.data() + i, forces.data() + i, balances.data() + i, steps,
+          trials);
   }
 }
 
@@ -172,8 +172,8 @@ NB_MODULE(_impedance, m) {
   m.doc() = "Compiled core of the stack of fractal impedance tasks; `pliant.controllers.stack` is its typed face.";
   nb::class_<Stack>(m, "Stack")
       .def("__init__", &build, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
-           nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(),
-           nb::arg("torque_limit"), nb::arg("tasks"))
+           nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(), nb::arg("torque_limit"),
+           nb::arg("tasks"))
       .def_prop_ro("state_size", &Stack::state_size)
       .def_prop_ro("output_size", &Stack::output_size)
       .def_prop_ro("kept_back", &Stack::kept_back)

@@ -19,9 +19,9 @@ struct Axis {
   double length;        // characteristic length of the bend, m or rad
 };
 
-constexpr double kSteepness = 20.0;                // S of Tiseo et al. 2020, sec. II-C
+constexpr double kSteepness = 20.0;  // S of Tiseo et al. 2020, sec. II-C
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kTanhPi = 0.99627207622074994;    // tanh(pi)
+constexpr double kTanhPi = 0.99627207622074994;  // tanh(pi)
 
 inline double log_cosh(double z) {
   const double a = std::fabs(z);  // the naive form overflows at 710

@@ -27,11 +27,12 @@ class Stack {
     for (const Task& task : tasks_) size += task.channels();
     return size;
   }
-  // Where in the memory the torque (n) stands that was asked for and not sent. A layer outside that sends less adds to it.
+  // Where in the memory the torque (n) stands that was asked for and not sent. A layer outside that sends less adds to
+  // it.
   int kept_back() const { return kHeader + joints(); }
 
-  // memory (state_size) in and out, out (output_size), q (n), J (6, n) column-major joint Jacobian at the world's origin,
-  // bias (n) added to the torque, or null.
+  // memory (state_size) in and out, out (output_size), q (n), J (6, n) column-major joint Jacobian at the world's
+  // origin, bias (n) added to the torque, or null.
   void step(double* memory, double* out, const double* q, const double* J, const double* bias,
             const std::vector<TaskInput>& input) const {
     const int n = joints();
@@ -69,8 +70,8 @@ class Stack {
   std::vector<TaskInput>& input() { return input_; }
 
  private:
-  // J that each task took in since the last tick: minus the sum of its torque, as sent, times the way of the joints. What
-  // was kept back of a joint's torque is shared by the size of the tasks' torques.
+  // J that each task took in since the last tick: minus the sum of its torque, as sent, times the way of the joints.
+  // What was kept back of a joint's torque is shared by the size of the tasks' torques.
   void book_work(const double* q, const double* q_last, const double* excess, const double* shares,
                  TaskState* states) const {
     const int n = joints();
@@ -103,9 +104,9 @@ class Stack {
                               w[5] + p[0] * w[1] - p[1] * w[0]};
     for (int j = 0; j < joints(); ++j) {
       const double* c = J + 6 * j;
-      torque[j] = task.moves(j) ? c[0] * w[0] + c[1] * w[1] + c[2] * w[2] + c[3] * moment[0] + c[4] * moment[1] +
-                                      c[5] * moment[2]
-                                : 0.0;
+      torque[j] = task.moves(j)
+                      ? c[0] * w[0] + c[1] * w[1] + c[2] * w[2] + c[3] * moment[0] + c[4] * moment[1] + c[5] * moment[2]
+                      : 0.0;
     }
   }
 

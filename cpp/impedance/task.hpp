@@ -70,7 +70,8 @@ class Task {
     TaskEnergies sum{};
     for (int i = 0; i < k; ++i) {
       move_axis(state, in, motion, first, i);
-      const AxisForce f = update_force(axis_, config_.shape, state.axis[i], state.state[i], motion.error[i], floor(i), i >= 3);
+      const AxisForce f =
+          update_force(axis_, config_.shape, state.axis[i], state.state[i], motion.error[i], floor(i), i >= 3);
       threshold[i] = f.threshold;
       sum.spendable += f.spendable;
     }
@@ -112,8 +113,8 @@ class Task {
     return m;
   }
 
-  // The work of one axis is h times its motion. The torque was held in the joints, though, not the force at the frame, and
-  // part of it may not have been sent: what is left over goes to the axes by the size of their work.
+  // The work of one axis is h times its motion. The torque was held in the joints, though, not the force at the frame,
+  // and part of it may not have been sent: what is left over goes to the axes by the size of their work.
   void share_work(const TaskState& state, TaskMotion& m) const {
     double weight[6], total = 0.0, sum = 0.0;
     for (int i = 0; i < axes(); ++i) {
@@ -182,8 +183,8 @@ class Task {
     for (int i = 0; i < 3; ++i) state.supplied += state.supply[3 + i] * turn[i];
   }
 
-  // The wrench m = J_l^-1 h turns the robot, J_l^-T h meets the reference. J_l^-1 may lift the moment above F_max: then all
-  // three h shrink by one factor, which keeps the moment conjugate to them. Returns the factor.
+  // The wrench m = J_l^-1 h turns the robot, J_l^-T h meets the reference. J_l^-1 may lift the moment above F_max: then
+  // all three h shrink by one factor, which keeps the moment conjugate to them. Returns the factor.
   double set_wrench(TaskState& state, int k, const double* error, double* wrench) const {
     double h[6] = {};
     for (int i = 0; i < k; ++i) h[i] = state.state[i].force;

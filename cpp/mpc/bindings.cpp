@@ -5,13 +5,13 @@
 #include "binding/solver.hpp"
 
 NB_MODULE(_mpc, m) {
-    using namespace pliant::mpc;
-    m.attr("MAX_JOINTS") = max_joints;
-    binding::bind_chain_and_model(m);
-    binding::bind_nodes(m);
-    binding::bind_node(m);
-    binding::bind_solver(m);
-    m.def("instruction_set", &instruction_set);
-    m.def("available_instruction_sets", &available_instruction_sets);
-    m.def("use_instruction_set", &use_instruction_set, nanobind::arg("name"));
+  using namespace pliant::mpc;
+  m.attr("MAX_JOINTS") = max_joints;
+  binding::bind_chain_and_model(m);
+  binding::bind_nodes(m);
+  binding::bind_node(m);
+  binding::bind_solver(m);
+  m.def("instruction_set", &instruction_set);
+  m.def("available_instruction_sets", &available_instruction_sets);
+  m.def("use_instruction_set", &use_instruction_set, nanobind::arg("name"));
 }

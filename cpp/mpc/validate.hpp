@@ -4,8 +4,8 @@
 
 namespace pliant::mpc {
 
-void validate(const ChainData &chain);
-void validate(const ModelData &model);
-void validate(const NodeData &node, int index, int dof, const ModelData &model, double dt);
+void validate(const ChainData& chain);
+void validate(const ModelData& model);
+void validate(const NodeData& node, int index, int dof, const ModelData& model, double dt);
 
-} // namespace pliant::mpc
+}  // namespace pliant::mpc

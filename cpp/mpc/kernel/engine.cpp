@@ -6,240 +6,275 @@
 namespace pliant::mpc::PLIANT_ISA {
 namespace {
 
-template <class L> Solver<L> &solver(Engine *engine) { return *reinterpret_cast<Solver<L> *>(engine); }
-template <class L> const Solver<L> &solver(const Engine *engine) { return *reinterpret_cast<const Solver<L> *>(engine); }
-
-template <class L> void destroy(Engine *engine) {
-    solver<L>(engine).~Solver<L>();
-    free(engine);
+template <class L>
+Solver<L>& solver(Engine* engine) {
+  return *reinterpret_cast<Solver<L>*>(engine);
+}
+template <class L>
+const Solver<L>& solver(const Engine* engine) {
+  return *reinterpret_cast<const Solver<L>*>(engine);
 }
 
-template <class L> Engine *create(const ChainData &chain, const ModelData &model, const Options &options) {
-    void *memory = aligned_alloc(64, (sizeof(Solver<L>) + 63) / 64 * 64);
-    if (!memory) return nullptr;
-    Solver<L> *s = ::new (memory) Solver<L>();
-    Engine *engine = reinterpret_cast<Engine *>(s);
-    if (s->allocate(chain, model, options)) return engine;
-    destroy<L>(engine);
-    return nullptr;
+template <class L>
+void destroy(Engine* engine) {
+  solver<L>(engine).~Solver<L>();
+  free(engine);
+}
+
+template <class L>
+Engine* create(const ChainData& chain, const ModelData& model, const Options& options) {
+  void* memory = aligned_alloc(64, (sizeof(Solver<L>) + 63) / 64 * 64);
+  if (!memory) return nullptr;
+  Solver<L>* s = ::new (memory) Solver<L>();
+  Engine* engine = reinterpret_cast<Engine*>(s);
+  if (s->allocate(chain, model, options)) return engine;
+  destroy<L>(engine);
+  return nullptr;
 }
 
 // Dense copies of the structured results -------------------------------------------------------------------------
 
-template <class L> struct Dense {
-    const StateMap<L> &map;
-    int nx, n;
+template <class L>
+struct Dense {
+  const StateMap<L>& map;
+  int nx, n;
 
-    explicit Dense(const StateMap<L> &m) : map(m), nx(m.dim()), n(m.dof) {}
-    void state_row(const Row<L> &r, double *out) const { map.unpack(r, out); }
-    void joint_row(const Lanes &r, double *out) const {
-        for (int i = 0; i < n; ++i) out[i] = r[i];
-    }
+  explicit Dense(const StateMap<L>& m) : map(m), nx(m.dim()), n(m.dof) {}
+  void state_row(const Row<L>& r, double* out) const { map.unpack(r, out); }
+  void joint_row(const Lanes& r, double* out) const {
+    for (int i = 0; i < n; ++i) out[i] = r[i];
+  }
 };
 
-template <class L> void dense_tangent(const Solver<L> &s, const NodeValues<L> &v, double *fx, double *fu) {
-    const Dense<L> dense(s.map);
-    for (int i = 0; i < dense.nx; ++i) { // row i of the tangent: the i-th unit row times it
-        Row<L> unit = zero_row<L>(), by_x;
-        unit.set(s.map.lane(i), 1);
-        Lanes by_u;
-        times_tangent<L>(unit, v, s.step, by_x, by_u);
-        dense.state_row(by_x, fx + i * dense.nx);
-        dense.joint_row(by_u, fu + i * dense.n);
-    }
-}
-
-template <class L> void dense_expansion(const Solver<L> &s, const NodeValues<L> &v, NodeOutput &out) {
-    const Dense<L> dense(s.map);
-    dense.state_row(v.Lx, out.Lx);
-    dense.joint_row(v.Lu, out.Lu);
-    for (int i = 0; i < dense.nx; ++i) dense.state_row(v.Lxx[s.map.lane(i)], out.Lxx + i * dense.nx);
-    double row[3 * max_joints];
-    for (int i = 0; i < dense.n; ++i) {
-        dense.joint_row(v.Luu[i], out.Luu + i * dense.n);
-        dense.state_row(v.Lux[i], row);
-        for (int k = 0; k < dense.nx; ++k) out.Lxu[k * dense.n + i] = row[k];
-    }
-}
-
-template <class L> void dense_force(const Solver<L> &s, const NodeValues<L> &v, NodeOutput &out) {
-    const Dense<L> dense(s.map);
-    for (int c = 0; c < s.model.data.contact_dim; ++c) {
-        if constexpr (L::extra == Extra::force) {
-            for (int k = 0; k < dense.nx; ++k) out.force_x[c * dense.nx + k] = k == 2 * dense.n + c;
-            for (int k = 0; k < dense.n; ++k) out.force_u[c * dense.n + k] = 0;
-        } else {
-            dense.state_row(v.force_x[c], out.force_x + c * dense.nx);
-            dense.joint_row(v.force_u[c], out.force_u + c * dense.n);
-        }
-    }
+template <class L>
+void dense_tangent(const Solver<L>& s, const NodeValues<L>& v, double* fx, double* fu) {
+  const Dense<L> dense(s.map);
+  for (int i = 0; i < dense.nx; ++i) {  // row i of the tangent: the i-th unit row times it
+    Row<L> unit = zero_row<L>(), by_x;
+    unit.set(s.map.lane(i), 1);
+    Lanes by_u;
+    times_tangent<L>(unit, v, s.step, by_x, by_u);
+    dense.state_row(by_x, fx + i * dense.nx);
+    dense.joint_row(by_u, fu + i * dense.n);
+  }
 }
 
 template <class L>
-void evaluate(Engine *engine, const NodeData &data, bool terminal, bool derivatives, const double *x, const double *u,
-              NodeOutput &out) {
-    Solver<L> &s = solver<L>(engine);
-    NodeValues<L> &v = s.current().node[0];
-    memset(static_cast<void *>(&v), 0xff, sizeof v); // NaN everywhere: what the kernel forgets to write shows
-    make_stage(data, s.model.data, s.model.disc, s.chain.dof, terminal, s.stages[0]);
-    const Row<L> state = s.map.pack(x);
-    s.evaluate_node(s.stages[0], state, load_part(u, s.chain.dof, 1), derivatives, v);
-    if (terminal) {
-        v.x_next = state;
-        v.acceleration = zero();
-        for (int c = 0; c < s.model.data.contact_dim; ++c) {
-            v.force_rate[c] = 0;
-            if (L::extra != Extra::force) v.force[c] = 0;
-        }
-    }
-    const Dense<L> dense(s.map);
-    out.cost = v.cost;
-    dense.state_row(v.x_next, out.x_next);
-    dense.joint_row(v.acceleration, out.acceleration);
-    for (int c = 0; c < s.model.data.contact_dim; ++c) {
-        out.force[c] = v.force[c];
-        out.force_rate[c] = v.force_rate[c];
-    }
-    if (!derivatives) return;
-    if (!terminal) {
-        dense_tangent(s, v, out.fx, out.fu);
-        dense_force(s, v, out);
-    }
-    dense_expansion(s, v, out);
+void dense_expansion(const Solver<L>& s, const NodeValues<L>& v, NodeOutput& out) {
+  const Dense<L> dense(s.map);
+  dense.state_row(v.Lx, out.Lx);
+  dense.joint_row(v.Lu, out.Lu);
+  for (int i = 0; i < dense.nx; ++i) dense.state_row(v.Lxx[s.map.lane(i)], out.Lxx + i * dense.nx);
+  double row[3 * max_joints];
+  for (int i = 0; i < dense.n; ++i) {
+    dense.joint_row(v.Luu[i], out.Luu + i * dense.n);
+    dense.state_row(v.Lux[i], row);
+    for (int k = 0; k < dense.nx; ++k) out.Lxu[k * dense.n + i] = row[k];
+  }
 }
 
 template <class L>
-double time_node(Engine *engine, const NodeData &data, bool terminal, bool derivatives, const double *x, const double *u,
-                 int repetitions) {
-    Solver<L> &s = solver<L>(engine);
-    NodeValues<L> &v = s.current().node[0];
-    make_stage(data, s.model.data, s.model.disc, s.chain.dof, terminal, s.stages[0]);
-    const Row<L> state = s.map.pack(x);
-    const Lanes control = load_part(u, s.chain.dof, 1);
-    const double start = now_seconds();
-    for (int i = 0; i < repetitions; ++i) s.evaluate_node(s.stages[0], state, control, derivatives, v);
-    return (now_seconds() - start) / repetitions;
+void dense_force(const Solver<L>& s, const NodeValues<L>& v, NodeOutput& out) {
+  const Dense<L> dense(s.map);
+  for (int c = 0; c < s.model.data.contact_dim; ++c) {
+    if constexpr (L::extra == Extra::force) {
+      for (int k = 0; k < dense.nx; ++k) out.force_x[c * dense.nx + k] = k == 2 * dense.n + c;
+      for (int k = 0; k < dense.n; ++k) out.force_u[c * dense.n + k] = 0;
+    } else {
+      dense.state_row(v.force_x[c], out.force_x + c * dense.nx);
+      dense.joint_row(v.force_u[c], out.force_u + c * dense.n);
+    }
+  }
 }
 
-template <class L> void freeze(Engine *engine, const double *task_rotation, const double *q) {
-    Solver<L> &s = solver<L>(engine);
-    s.freeze(mat(task_rotation), load_part(q, s.chain.dof, 1));
+template <class L>
+void evaluate(Engine* engine, const NodeData& data, bool terminal, bool derivatives, const double* x, const double* u,
+              NodeOutput& out) {
+  Solver<L>& s = solver<L>(engine);
+  NodeValues<L>& v = s.current().node[0];
+  memset(static_cast<void*>(&v), 0xff, sizeof v);  // NaN everywhere: what the kernel forgets to write shows
+  make_stage(data, s.model.data, s.model.disc, s.chain.dof, terminal, s.stages[0]);
+  const Row<L> state = s.map.pack(x);
+  s.evaluate_node(s.stages[0], state, load_part(u, s.chain.dof, 1), derivatives, v);
+  if (terminal) {
+    v.x_next = state;
+    v.acceleration = zero();
+    for (int c = 0; c < s.model.data.contact_dim; ++c) {
+      v.force_rate[c] = 0;
+      if (L::extra != Extra::force) v.force[c] = 0;
+    }
+  }
+  const Dense<L> dense(s.map);
+  out.cost = v.cost;
+  dense.state_row(v.x_next, out.x_next);
+  dense.joint_row(v.acceleration, out.acceleration);
+  for (int c = 0; c < s.model.data.contact_dim; ++c) {
+    out.force[c] = v.force[c];
+    out.force_rate[c] = v.force_rate[c];
+  }
+  if (!derivatives) return;
+  if (!terminal) {
+    dense_tangent(s, v, out.fx, out.fu);
+    dense_force(s, v, out);
+  }
+  dense_expansion(s, v, out);
+}
+
+template <class L>
+double time_node(Engine* engine, const NodeData& data, bool terminal, bool derivatives, const double* x,
+                 const double* u, int repetitions) {
+  Solver<L>& s = solver<L>(engine);
+  NodeValues<L>& v = s.current().node[0];
+  make_stage(data, s.model.data, s.model.disc, s.chain.dof, terminal, s.stages[0]);
+  const Row<L> state = s.map.pack(x);
+  const Lanes control = load_part(u, s.chain.dof, 1);
+  const double start = now_seconds();
+  for (int i = 0; i < repetitions; ++i) s.evaluate_node(s.stages[0], state, control, derivatives, v);
+  return (now_seconds() - start) / repetitions;
+}
+
+template <class L>
+void freeze(Engine* engine, const double* task_rotation, const double* q) {
+  Solver<L>& s = solver<L>(engine);
+  s.freeze(mat(task_rotation), load_part(q, s.chain.dof, 1));
 }
 
 // Plan -------------------------------------------------------------------------------------------------------------
 
-template <class L> void set_plan(Engine *engine, const double *xs, const double *us) {
-    Solver<L> &s = solver<L>(engine);
-    const int N = s.options.horizon, n = s.chain.dof, nx = s.map.dim();
-    for (int k = 0; xs && k <= N; ++k) s.current().x[k] = s.map.pack(xs + k * nx);
-    for (int k = 0; us && k < N; ++k) s.current().u[k] = load_part(us + k * n, n, 1);
+template <class L>
+void set_plan(Engine* engine, const double* xs, const double* us) {
+  Solver<L>& s = solver<L>(engine);
+  const int N = s.options.horizon, n = s.chain.dof, nx = s.map.dim();
+  for (int k = 0; xs && k <= N; ++k) s.current().x[k] = s.map.pack(xs + k * nx);
+  for (int k = 0; us && k < N; ++k) s.current().u[k] = load_part(us + k * n, n, 1);
 }
 
-template <class L> void get_plan(const Engine *engine, double *xs, double *us) {
-    const Solver<L> &s = solver<L>(engine);
-    const Dense<L> dense(s.map);
-    const int N = s.options.horizon;
-    for (int k = 0; xs && k <= N; ++k) dense.state_row(s.current().x[k], xs + k * dense.nx);
-    for (int k = 0; us && k < N; ++k) dense.joint_row(s.current().u[k], us + k * dense.n);
+template <class L>
+void get_plan(const Engine* engine, double* xs, double* us) {
+  const Solver<L>& s = solver<L>(engine);
+  const Dense<L> dense(s.map);
+  const int N = s.options.horizon;
+  for (int k = 0; xs && k <= N; ++k) dense.state_row(s.current().x[k], xs + k * dense.nx);
+  for (int k = 0; us && k < N; ++k) dense.joint_row(s.current().u[k], us + k * dense.n);
 }
 
-template <class L> void shift(Engine *engine) {
-    Solver<L> &s = solver<L>(engine);
-    const int N = s.options.horizon;
-    Iterate<L> &it = s.current();
-    for (int k = 0; k < N; ++k) it.x[k] = it.x[k + 1];
-    for (int k = 0; k + 1 < N; ++k) it.u[k] = it.u[k + 1];
-    for (int k = 0; s.options.bounds && k < N; ++k) s.multipliers[k] = s.multipliers[k + 1];
+template <class L>
+void shift(Engine* engine) {
+  Solver<L>& s = solver<L>(engine);
+  const int N = s.options.horizon;
+  Iterate<L>& it = s.current();
+  for (int k = 0; k < N; ++k) it.x[k] = it.x[k + 1];
+  for (int k = 0; k + 1 < N; ++k) it.u[k] = it.u[k + 1];
+  for (int k = 0; s.options.bounds && k < N; ++k) s.multipliers[k] = s.multipliers[k + 1];
 }
 
-template <class L> void reset(Engine *engine) {
-    Solver<L> &s = solver<L>(engine);
-    for (int k = 0; k < s.multipliers.count; ++k) s.multipliers[k] = BoundVector{};
+template <class L>
+void reset(Engine* engine) {
+  Solver<L>& s = solver<L>(engine);
+  for (int k = 0; k < s.multipliers.count; ++k) s.multipliers[k] = BoundVector{};
 }
 
-template <class L> void quasi_static(Engine *engine, const NodeData *nodes, const double *x0) {
-    Solver<L> &s = solver<L>(engine);
-    const int N = s.options.horizon;
-    Iterate<L> &it = s.current();
-    const Row<L> x = s.map.pack(x0);
-    for (int k = 0; k <= N; ++k) it.x[k] = x;
-    Rest<L::J> rest;
-    make_rest<L::J>(s.chain, s.model.data, mat(nodes[0].task_rotation), x.block[0] * s.chain.is_joint, rest);
-    for (int k = 0; k < N; ++k) {
-        it.u[k] = rest.gravity_torque;
-        for (int f = 0; f < L::M && nodes[k].contact_active; ++f)
-            it.u[k] -= rest.contact_row[f] * x[L::force_lane(f)];
+template <class L>
+void quasi_static(Engine* engine, const NodeData* nodes, const double* x0) {
+  Solver<L>& s = solver<L>(engine);
+  const int N = s.options.horizon;
+  Iterate<L>& it = s.current();
+  const Row<L> x = s.map.pack(x0);
+  for (int k = 0; k <= N; ++k) it.x[k] = x;
+  Rest<L::J> rest;
+  make_rest<L::J>(s.chain, s.model.data, mat(nodes[0].task_rotation), x.block[0] * s.chain.is_joint, rest);
+  for (int k = 0; k < N; ++k) {
+    it.u[k] = rest.gravity_torque;
+    for (int f = 0; f < L::M && nodes[k].contact_active; ++f) it.u[k] -= rest.contact_row[f] * x[L::force_lane(f)];
+  }
+  if constexpr (L::has_torque)
+    for (int k = 0; k <= N; ++k) it.x[k].block[2] = rest.gravity_torque;
+}
+
+template <class L>
+void solve(Engine* engine, const NodeData* nodes, const double* x0, const Limits& limits, Report& report) {
+  solver<L>(engine).solve(nodes, x0, limits, report);
+}
+
+template <class L>
+void get_feedback(const Engine* engine, double* gain, double* forces) {
+  const Solver<L>& s = solver<L>(engine);
+  const Dense<L> dense(s.map);
+  const StageFactor<L>& f = s.factors[0];
+  for (int k = 0; k < dense.nx; ++k) {  // R⁻ᵀ Y, column by column
+    double column[lane_count] = {};
+    for (int i = L::J - 1; i >= 0; --i) {
+      double t = f.Y[i][s.map.lane(k)];
+      for (int j = i + 1; j < L::J; ++j) t -= f.lower[j][i] * column[j];
+      column[i] = t * f.reciprocal[i];
     }
-    if constexpr (L::has_torque)
-        for (int k = 0; k <= N; ++k) it.x[k].block[2] = rest.gravity_torque;
+    for (int i = 0; i < dense.n; ++i) gain[i * dense.nx + k] = column[i];
+  }
+  const int dim = s.model.data.contact_dim;
+  for (int k = 0; k < s.options.horizon; ++k)
+    for (int c = 0; c < dim; ++c) forces[k * dim + c] = s.current().node[k].force[c];
 }
 
-template <class L> void solve(Engine *engine, const NodeData *nodes, const double *x0, const Limits &limits, Report &report) {
-    solver<L>(engine).solve(nodes, x0, limits, report);
+template <int J>
+void make_rest_of(const ChainData& data, const double* q, Rest<J>& rest) {
+  make_rest<J>(make_chain(data, J), ModelData{}, Mat{}, load_part(q, data.dof, 1), rest);
 }
 
-template <class L> void get_feedback(const Engine *engine, double *gain, double *forces) {
-    const Solver<L> &s = solver<L>(engine);
-    const Dense<L> dense(s.map);
-    const StageFactor<L> &f = s.factors[0];
-    for (int k = 0; k < dense.nx; ++k) { // R⁻ᵀ Y, column by column
-        double column[lane_count] = {};
-        for (int i = L::J - 1; i >= 0; --i) {
-            double t = f.Y[i][s.map.lane(k)];
-            for (int j = i + 1; j < L::J; ++j) t -= f.lower[j][i] * column[j];
-            column[i] = t * f.reciprocal[i];
-        }
-        for (int i = 0; i < dense.n; ++i) gain[i * dense.nx + k] = column[i];
-    }
-    const int dim = s.model.data.contact_dim;
-    for (int k = 0; k < s.options.horizon; ++k)
-        for (int c = 0; c < dim; ++c) forces[k * dim + c] = s.current().node[k].force[c];
+template <int J>
+void mass_matrix_of(const ChainData& data, const double* q, double* M) {
+  Rest<J> rest;
+  make_rest_of<J>(data, q, rest);
+  for (int i = 0; i < data.dof; ++i)
+    for (int j = i; j < data.dof; ++j) M[i * data.dof + j] = M[j * data.dof + i] = rest.M.row[i][j];
 }
 
-template <int J> void make_rest_of(const ChainData &data, const double *q, Rest<J> &rest) {
-    make_rest<J>(make_chain(data, J), ModelData{}, Mat{}, load_part(q, data.dof, 1), rest);
-}
-
-template <int J> void mass_matrix_of(const ChainData &data, const double *q, double *M) {
-    Rest<J> rest;
-    make_rest_of<J>(data, q, rest);
-    for (int i = 0; i < data.dof; ++i)
-        for (int j = i; j < data.dof; ++j) M[i * data.dof + j] = M[j * data.dof + i] = rest.M.row[i][j];
-}
-
-template <int J> void placement(const ChainData &data, bool contact, const double *q, double *R, double *p) {
-    Rest<J> rest;
-    make_rest_of<J>(data, q, rest);
-    const Frame &f = contact ? rest.contact : rest.tool;
-    for (int i = 0; i < 9; ++i) R[i] = f.R.m[i];
-    p[0] = f.p.x;
-    p[1] = f.p.y;
-    p[2] = f.p.z;
+template <int J>
+void placement(const ChainData& data, bool contact, const double* q, double* R, double* p) {
+  Rest<J> rest;
+  make_rest_of<J>(data, q, rest);
+  const Frame& f = contact ? rest.contact : rest.tool;
+  for (int i = 0; i < 9; ++i) R[i] = f.R.m[i];
+  p[0] = f.p.x;
+  p[1] = f.p.y;
+  p[2] = f.p.z;
 }
 
 #define PLIANT_STRING_(x) #x
 #define PLIANT_STRING(x) PLIANT_STRING_(x)
 
-template <class L> const KernelTable *table() {
-    static constexpr KernelTable t = {PLIANT_STRING(PLIANT_ISA), create<L>,   destroy<L>,  evaluate<L>,
-                                      time_node<L>,              freeze<L>,   set_plan<L>, get_plan<L>,
-                                      shift<L>,                  reset<L>,    quasi_static<L>, solve<L>,
-                                      get_feedback<L>,           mass_matrix_of<L::J>, placement<L::J>};
-    return &t;
+template <class L>
+const KernelTable* table() {
+  static constexpr KernelTable t = {PLIANT_STRING(PLIANT_ISA),
+                                    create<L>,
+                                    destroy<L>,
+                                    evaluate<L>,
+                                    time_node<L>,
+                                    freeze<L>,
+                                    set_plan<L>,
+                                    get_plan<L>,
+                                    shift<L>,
+                                    reset<L>,
+                                    quasi_static<L>,
+                                    solve<L>,
+                                    get_feedback<L>,
+                                    mass_matrix_of<L::J>,
+                                    placement<L::J>};
+  return &t;
 }
 
-template <int J> const KernelTable *table_for(const ModelData &model) {
-    if (model.kind == Kind::torque_feedback) return table<Layout<J, Extra::torque, 0>>();
-    if (model.kind != Kind::force_feedback) return table<Layout<J, Extra::none, 0>>();
-    if (model.contact_dim == 1) return table<Layout<J, Extra::force, 1>>();
-    if (model.contact_dim == 3) return table<Layout<J, Extra::force, 3>>();
-    return table<Layout<J, Extra::force, 6>>();
+template <int J>
+const KernelTable* table_for(const ModelData& model) {
+  if (model.kind == Kind::torque_feedback) return table<Layout<J, Extra::torque, 0>>();
+  if (model.kind != Kind::force_feedback) return table<Layout<J, Extra::none, 0>>();
+  if (model.contact_dim == 1) return table<Layout<J, Extra::force, 1>>();
+  if (model.contact_dim == 3) return table<Layout<J, Extra::force, 3>>();
+  return table<Layout<J, Extra::force, 6>>();
 }
 
-} // namespace
+}  // namespace
 
-const KernelTable *select_kernel(int dof, const ModelData &model) {
-    return dof <= 7 ? table_for<7>(model) : table_for<8>(model);
+const KernelTable* select_kernel(int dof, const ModelData& model) {
+  return dof <= 7 ? table_for<7>(model) : table_for<8>(model);
 }
 
-} // namespace pliant::mpc::PLIANT_ISA
+}  // namespace pliant::mpc::PLIANT_ISA

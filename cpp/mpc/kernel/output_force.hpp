@@ -7,279 +7,291 @@ namespace pliant::mpc::PLIANT_ISA {
 
 // λ and its derivatives, as an output of (q, v, τ).
 struct OutputForce {
-    double value[max_contact];
-    Lanes by_q[max_contact], by_v[max_contact], by_torque[max_contact];
+  double value[max_contact];
+  Lanes by_q[max_contact], by_v[max_contact], by_torque[max_contact];
 };
 
 // Solves (J M⁻¹ Jᵀ) X = Y in place by Cholesky; small and dense.
 struct TaskInertia {
-    int dim;
-    double lower[max_contact][max_contact], reciprocal[max_contact];
+  int dim;
+  double lower[max_contact][max_contact], reciprocal[max_contact];
 
-    template <class T> PLIANT_INLINE void solve(T *y) const {
-        for (int i = 0; i < dim; ++i) {
-            for (int k = 0; k < i; ++k) y[i] = y[i] - y[k] * lower[i][k];
-            y[i] = y[i] * reciprocal[i];
-        }
-        for (int i = dim - 1; i >= 0; --i) {
-            for (int k = i + 1; k < dim; ++k) y[i] = y[i] - y[k] * lower[k][i];
-            y[i] = y[i] * reciprocal[i];
-        }
+  template <class T>
+  PLIANT_INLINE void solve(T* y) const {
+    for (int i = 0; i < dim; ++i) {
+      for (int k = 0; k < i; ++k) y[i] = y[i] - y[k] * lower[i][k];
+      y[i] = y[i] * reciprocal[i];
     }
+    for (int i = dim - 1; i >= 0; --i) {
+      for (int k = i + 1; k < dim; ++k) y[i] = y[i] - y[k] * lower[k][i];
+      y[i] = y[i] * reciprocal[i];
+    }
+  }
 };
 
 // J M⁻¹ (rows) and the factor of J M⁻¹ Jᵀ.
 template <int J>
-PLIANT_INLINE void task_inertia(const Contact &c, const Inverse<J> &Minv, int dim, Lanes *JMinv, TaskInertia &task) {
-    task.dim = dim;
-    for (int i = 0; i < dim; ++i) JMinv[i] = multiply<J>(Minv.row, c.J[i]);
-    for (int j = 0; j < dim; ++j) {
-        for (int i = j; i < dim; ++i) {
-            double t = sum(JMinv[i] * c.J[j]);
-            for (int k = 0; k < j; ++k) t -= task.lower[i][k] * task.lower[j][k];
-            if (i == j) {
-                task.lower[j][j] = sqrt(t);
-                task.reciprocal[j] = 1 / task.lower[j][j];
-            } else {
-                task.lower[i][j] = t * task.reciprocal[j];
-            }
-        }
+PLIANT_INLINE void task_inertia(const Contact& c, const Inverse<J>& Minv, int dim, Lanes* JMinv, TaskInertia& task) {
+  task.dim = dim;
+  for (int i = 0; i < dim; ++i) JMinv[i] = multiply<J>(Minv.row, c.J[i]);
+  for (int j = 0; j < dim; ++j) {
+    for (int i = j; i < dim; ++i) {
+      double t = sum(JMinv[i] * c.J[j]);
+      for (int k = 0; k < j; ++k) t -= task.lower[i][k] * task.lower[j][k];
+      if (i == j) {
+        task.lower[j][j] = sqrt(t);
+        task.reciprocal[j] = 1 / task.lower[j][j];
+      } else {
+        task.lower[i][j] = t * task.reciprocal[j];
+      }
     }
+  }
 }
 
 // Everything the models below need besides the pass.
-template <int J> struct OutputPass {
-    Pass<J> pass;
-    Contact contact;
-    int dim; // 0 when there is no contact
-    bool rigid;
-    Lanes JMinv[max_contact];
-    TaskInertia task;
-    double deflection[max_contact];
-    Lanes deflection_q[max_contact];
-    OutputForce force;
+template <int J>
+struct OutputPass {
+  Pass<J> pass;
+  Contact contact;
+  int dim;  // 0 when there is no contact
+  bool rigid;
+  Lanes JMinv[max_contact];
+  TaskInertia task;
+  double deflection[max_contact];
+  Lanes deflection_q[max_contact];
+  OutputForce force;
 };
 
 // Rigid contact, Gauss's principle [FFMPC eq. 3–4] with Baumgarte's terms: J v̇ + dJ/dt v + kd J v + kp e = 0.
-template <int J> PLIANT_INLINE void rigid_force(const ModelData &model, const Lanes &free_acceleration, OutputPass<J> &o) {
-    const Contact &c = o.contact;
-    task_inertia<J>(c, o.pass.Minv, o.dim, o.JMinv, o.task);
-    for (int i = 0; i < o.dim; ++i)
-        o.force.value[i] = -(sum(c.J[i] * free_acceleration) + c.drift[i] + model.baumgarte_velocity * c.speed[i] +
-                             model.baumgarte_position * o.deflection[i]);
-    o.task.solve(o.force.value);
+template <int J>
+PLIANT_INLINE void rigid_force(const ModelData& model, const Lanes& free_acceleration, OutputPass<J>& o) {
+  const Contact& c = o.contact;
+  task_inertia<J>(c, o.pass.Minv, o.dim, o.JMinv, o.task);
+  for (int i = 0; i < o.dim; ++i)
+    o.force.value[i] = -(sum(c.J[i] * free_acceleration) + c.drift[i] + model.baumgarte_velocity * c.speed[i] +
+                         model.baumgarte_position * o.deflection[i]);
+  o.task.solve(o.force.value);
 }
 
-template <int J> PLIANT_INLINE void visco_elastic_force(const Stage &s, OutputPass<J> &o) { // [FFMPC eq. 16]
-    for (int i = 0; i < o.dim; ++i)
-        o.force.value[i] = -s.stiffness[i] * o.deflection[i] - s.damping[i] * o.contact.speed[i];
+template <int J>
+PLIANT_INLINE void visco_elastic_force(const Stage& s, OutputPass<J>& o) {  // [FFMPC eq. 16]
+  for (int i = 0; i < o.dim; ++i)
+    o.force.value[i] = -s.stiffness[i] * o.deflection[i] - s.damping[i] * o.contact.speed[i];
 }
 
 // Derivatives of λ; a_q and a_v hold −M⁻¹ ∂ID/∂q and −M⁻¹ ∂ID/∂v (rows).
 template <int J>
-PLIANT_INLINE void rigid_force_derivatives(const ModelData &model, const ContactDerivatives &cd, const Lanes *a_q,
-                                           const Lanes *a_v, OutputPass<J> &o) {
-    const Contact &c = o.contact;
-    OutputForce &f = o.force;
-    for (int i = 0; i < o.dim; ++i) {
-        Lanes by_q = cd.acceleration_q[i] + cd.speed_q[i] * model.baumgarte_velocity +
-                     o.deflection_q[i] * model.baumgarte_position;
-        Lanes by_v = cd.acceleration_v[i] + c.J[i] * model.baumgarte_velocity;
+PLIANT_INLINE void rigid_force_derivatives(const ModelData& model, const ContactDerivatives& cd, const Lanes* a_q,
+                                           const Lanes* a_v, OutputPass<J>& o) {
+  const Contact& c = o.contact;
+  OutputForce& f = o.force;
+  for (int i = 0; i < o.dim; ++i) {
+    Lanes by_q =
+        cd.acceleration_q[i] + cd.speed_q[i] * model.baumgarte_velocity + o.deflection_q[i] * model.baumgarte_position;
+    Lanes by_v = cd.acceleration_v[i] + c.J[i] * model.baumgarte_velocity;
 #pragma GCC unroll 8
-        for (int k = 0; k < J; ++k) {
-            by_q += a_q[k] * c.J[i][k];
-            by_v += a_v[k] * c.J[i][k];
-        }
-        f.by_q[i] = -by_q;
-        f.by_v[i] = -by_v;
-        f.by_torque[i] = -o.JMinv[i];
+    for (int k = 0; k < J; ++k) {
+      by_q += a_q[k] * c.J[i][k];
+      by_v += a_v[k] * c.J[i][k];
     }
-    o.task.solve(f.by_q);
-    o.task.solve(f.by_v);
-    o.task.solve(f.by_torque);
+    f.by_q[i] = -by_q;
+    f.by_v[i] = -by_v;
+    f.by_torque[i] = -o.JMinv[i];
+  }
+  o.task.solve(f.by_q);
+  o.task.solve(f.by_v);
+  o.task.solve(f.by_torque);
 }
 
 template <int J>
-PLIANT_INLINE void visco_elastic_force_derivatives(const Stage &s, const ContactDerivatives &cd, OutputPass<J> &o) {
-    for (int i = 0; i < o.dim; ++i) {
-        o.force.by_q[i] = -(o.deflection_q[i] * s.stiffness[i] + cd.speed_q[i] * s.damping[i]);
-        o.force.by_v[i] = -(o.contact.J[i] * s.damping[i]);
-        o.force.by_torque[i] = zero();
-        o.JMinv[i] = multiply<J>(o.pass.Minv.row, o.contact.J[i]);
-    }
+PLIANT_INLINE void visco_elastic_force_derivatives(const Stage& s, const ContactDerivatives& cd, OutputPass<J>& o) {
+  for (int i = 0; i < o.dim; ++i) {
+    o.force.by_q[i] = -(o.deflection_q[i] * s.stiffness[i] + cd.speed_q[i] * s.damping[i]);
+    o.force.by_v[i] = -(o.contact.J[i] * s.damping[i]);
+    o.force.by_torque[i] = zero();
+    o.JMinv[i] = multiply<J>(o.pass.Minv.row, o.contact.J[i]);
+  }
 }
 
 // One row over the state from its parts over q, v and τ; τ is the state's or the control's.
 template <class L>
-PLIANT_INLINE void set_row(const Lanes &by_q, const Lanes &by_v, const Lanes &by_torque, Row<L> &row_x, Lanes &row_u) {
-    row_x.block[0] = by_q;
-    row_x.block[1] = by_v;
-    if constexpr (L::has_torque) {
-        row_x.block[2] = by_torque;
-        row_u = zero();
-    } else {
-        row_u = by_torque;
-    }
+PLIANT_INLINE void set_row(const Lanes& by_q, const Lanes& by_v, const Lanes& by_torque, Row<L>& row_x, Lanes& row_u) {
+  row_x.block[0] = by_q;
+  row_x.block[1] = by_v;
+  if constexpr (L::has_torque) {
+    row_x.block[2] = by_torque;
+    row_u = zero();
+  } else {
+    row_u = by_torque;
+  }
 }
 
 template <class L>
-PLIANT_INLINE void output_force_tangent(const ModelData &model, const Stage &s, const LoadedDerivatives<L::J> &ld,
-                                        OutputPass<L::J> &o, NodeValues<L> &n) {
-    constexpr int J = L::J;
-    const Pass<J> &p = o.pass;
-    Lanes a_q[J], a_v[J], a_torque[J];
+PLIANT_INLINE void output_force_tangent(const ModelData& model, const Stage& s, const LoadedDerivatives<L::J>& ld,
+                                        OutputPass<L::J>& o, NodeValues<L>& n) {
+  constexpr int J = L::J;
+  const Pass<J>& p = o.pass;
+  Lanes a_q[J], a_v[J], a_torque[J];
 #pragma GCC unroll 1
-    for (int i = 0; i < J; ++i) {
-        a_q[i] = zero();
-        a_v[i] = zero();
-        a_torque[i] = p.Minv.row[i];
+  for (int i = 0; i < J; ++i) {
+    a_q[i] = zero();
+    a_v[i] = zero();
+    a_torque[i] = p.Minv.row[i];
 #pragma GCC unroll 8
-        for (int k = 0; k < J; ++k) {
-            a_q[i] -= ld.id.q[k] * p.Minv.row[i][k];
-            a_v[i] -= ld.id.v[k] * p.Minv.row[i][k];
-        }
+    for (int k = 0; k < J; ++k) {
+      a_q[i] -= ld.id.q[k] * p.Minv.row[i][k];
+      a_v[i] -= ld.id.v[k] * p.Minv.row[i][k];
     }
-    if (o.dim > 0) {
-        ContactDerivatives cd;
-        contact_derivatives(p.kin, p.vel, p.dyn, o.contact, ld.axis_acc, ld.last_acceleration, o.dim, cd);
-        if (o.rigid) rigid_force_derivatives<J>(model, cd, a_q, a_v, o);
-        else visco_elastic_force_derivatives<J>(s, cd, o);
-    }
-    for (int f = 0; f < o.dim; ++f) {
+  }
+  if (o.dim > 0) {
+    ContactDerivatives cd;
+    contact_derivatives(p.kin, p.vel, p.dyn, o.contact, ld.axis_acc, ld.last_acceleration, o.dim, cd);
+    if (o.rigid)
+      rigid_force_derivatives<J>(model, cd, a_q, a_v, o);
+    else
+      visco_elastic_force_derivatives<J>(s, cd, o);
+  }
+  for (int f = 0; f < o.dim; ++f) {
 #pragma GCC unroll 1
-        for (int i = 0; i < J; ++i) { // v̇ feels λ through M⁻¹ Jᵀ
-            const double share = o.JMinv[f][i];
-            a_q[i] += o.force.by_q[f] * share;
-            a_v[i] += o.force.by_v[f] * share;
-            a_torque[i] += o.force.by_torque[f] * share;
-        }
-        set_row<L>(o.force.by_q[f], o.force.by_v[f], o.force.by_torque[f], n.force_x[f], n.force_u[f]);
+    for (int i = 0; i < J; ++i) {  // v̇ feels λ through M⁻¹ Jᵀ
+      const double share = o.JMinv[f][i];
+      a_q[i] += o.force.by_q[f] * share;
+      a_v[i] += o.force.by_v[f] * share;
+      a_torque[i] += o.force.by_torque[f] * share;
     }
+    set_row<L>(o.force.by_q[f], o.force.by_v[f], o.force.by_torque[f], n.force_x[f], n.force_u[f]);
+  }
 #pragma GCC unroll 1
-    for (int i = 0; i < J; ++i) set_row<L>(a_q[i], a_v[i], a_torque[i], n.rate_x[i], n.rate_u[i]);
+  for (int i = 0; i < J; ++i) set_row<L>(a_q[i], a_v[i], a_torque[i], n.rate_x[i], n.rate_u[i]);
 }
 
-// Joint i's pair r_τ = τ_i + c(x), r_w = w_i + c(x), c with derivative row_x: one outer product and the rows of τ_i, w_i.
+// Joint i's pair r_τ = τ_i + c(x), r_w = w_i + c(x), c with derivative row_x: one outer product and the rows of τ_i,
+// w_i.
 template <class L>
-PLIANT_INLINE void add_filtered_residuals(NodeValues<L> &n, int i, const Row<L> &row_x, double weight, double residual,
+PLIANT_INLINE void add_filtered_residuals(NodeValues<L>& n, int i, const Row<L>& row_x, double weight, double residual,
                                           double weight_w, double residual_w) {
-    const int lane_torque = 16 + i;
-    const double both = weight + weight_w;
-    add_scaled(n.Lx, row_x, weight * residual + weight_w * residual_w);
-    n.Lx.add(lane_torque, weight * residual);
-    n.Lu.add(i, weight_w * residual_w);
-    n.Luu[i].add(i, weight_w);
-    add_scaled(n.Lux[i], row_x, weight_w);
+  const int lane_torque = 16 + i;
+  const double both = weight + weight_w;
+  add_scaled(n.Lx, row_x, weight * residual + weight_w * residual_w);
+  n.Lx.add(lane_torque, weight * residual);
+  n.Lu.add(i, weight_w * residual_w);
+  n.Luu[i].add(i, weight_w);
+  add_scaled(n.Lux[i], row_x, weight_w);
 #pragma GCC unroll 1
-    for (int k = 0; k < L::size; ++k) {
-        add_scaled(n.Lxx[k], row_x, both * row_x[k]);
-        n.Lxx[k].add(lane_torque, weight * row_x[k]);
-    }
-    add_scaled(n.Lxx[lane_torque], row_x, weight);
-    n.Lxx[lane_torque].add(lane_torque, weight);
+  for (int k = 0; k < L::size; ++k) {
+    add_scaled(n.Lxx[k], row_x, both * row_x[k]);
+    n.Lxx[k].add(lane_torque, weight * row_x[k]);
+  }
+  add_scaled(n.Lxx[lane_torque], row_x, weight);
+  n.Lxx[lane_torque].add(lane_torque, weight);
 }
 
 // Torque about gravity under load: r = τ − (g(q) − Jᵀλ) and, with a torque filter, r_w = w − (g(q) − Jᵀλ)
 // [FFMPC eq. 25.3, 28], where λ = λ(x, u).
 template <class L>
-PLIANT_INLINE void gravity_cost(const OutputPass<L::J> &o, const Stage &s, const SpatialVec &wrench, const Lanes &torque,
-                                const Lanes &u, bool derivatives, NodeValues<L> &n) {
-    constexpr int J = L::J;
-    const Pass<J> &p = o.pass;
-    const Lanes load = gravity_torque(p.kin, p.dyn, wrench);
-    const Lanes residual = torque - load, residual_w = u - load;
-    n.cost += 0.5 * sum(s.torque_weight * residual * residual);
-    if (L::has_torque) n.cost += 0.5 * sum(s.control_weight * residual_w * residual_w);
-    if (!derivatives) return;
-    Lanes rows[J];
-    load_torque_rows<J>(p, o.contact, wrench, o.dim > 0, rows);
-    const double cost = n.cost;
+PLIANT_INLINE void gravity_cost(const OutputPass<L::J>& o, const Stage& s, const SpatialVec& wrench,
+                                const Lanes& torque, const Lanes& u, bool derivatives, NodeValues<L>& n) {
+  constexpr int J = L::J;
+  const Pass<J>& p = o.pass;
+  const Lanes load = gravity_torque(p.kin, p.dyn, wrench);
+  const Lanes residual = torque - load, residual_w = u - load;
+  n.cost += 0.5 * sum(s.torque_weight * residual * residual);
+  if (L::has_torque) n.cost += 0.5 * sum(s.control_weight * residual_w * residual_w);
+  if (!derivatives) return;
+  Lanes rows[J];
+  load_torque_rows<J>(p, o.contact, wrench, o.dim > 0, rows);
+  const double cost = n.cost;
 #pragma GCC unroll 1
-    for (int i = 0; i < J; ++i) {
-        Lanes by_q = rows[i], by_v = zero(), by_torque = zero();
-        for (int f = 0; f < o.dim; ++f) {
-            by_q += o.force.by_q[f] * o.contact.J[f][i];
-            by_v += o.force.by_v[f] * o.contact.J[f][i];
-            by_torque += o.force.by_torque[f] * o.contact.J[f][i];
-        }
-        Row<L> row_x;
-        Lanes row_u;
-        if constexpr (L::has_torque) {
-            set_row<L>(by_q, by_v, by_torque, row_x, row_u);
-            add_filtered_residuals(n, i, row_x, s.torque_weight[i], residual[i], s.control_weight[i], residual_w[i]);
-        } else {
-            by_torque.add(i, 1);
-            set_row<L>(by_q, by_v, by_torque, row_x, row_u);
-            add_residual(n, row_x, row_u, s.torque_weight[i], residual[i]);
-        }
+  for (int i = 0; i < J; ++i) {
+    Lanes by_q = rows[i], by_v = zero(), by_torque = zero();
+    for (int f = 0; f < o.dim; ++f) {
+      by_q += o.force.by_q[f] * o.contact.J[f][i];
+      by_v += o.force.by_v[f] * o.contact.J[f][i];
+      by_torque += o.force.by_torque[f] * o.contact.J[f][i];
     }
-    n.cost = cost;
+    Row<L> row_x;
+    Lanes row_u;
+    if constexpr (L::has_torque) {
+      set_row<L>(by_q, by_v, by_torque, row_x, row_u);
+      add_filtered_residuals(n, i, row_x, s.torque_weight[i], residual[i], s.control_weight[i], residual_w[i]);
+    } else {
+      by_torque.add(i, 1);
+      set_row<L>(by_q, by_v, by_torque, row_x, row_u);
+      add_residual(n, row_x, row_u, s.torque_weight[i], residual[i]);
+    }
+  }
+  n.cost = cost;
 }
 
 template <class L>
-PLIANT_INLINE void output_force_cost(const OutputPass<L::J> &o, const Stage &s, bool derivatives, NodeValues<L> &n) {
-    for (int f = 0; f < o.dim; ++f) { // [FFMPC eq. 7, 12]
-        const double error = n.force[f] - s.force_reference[f], w = s.force_weight[f];
-        if (!derivatives) n.cost += 0.5 * w * error * error;
-        else if constexpr (L::has_torque) add_state_residual(n, n.force_x[f], w, error);
-        else add_residual(n, n.force_x[f], n.force_u[f], w, error);
-    }
+PLIANT_INLINE void output_force_cost(const OutputPass<L::J>& o, const Stage& s, bool derivatives, NodeValues<L>& n) {
+  for (int f = 0; f < o.dim; ++f) {  // [FFMPC eq. 7, 12]
+    const double error = n.force[f] - s.force_reference[f], w = s.force_weight[f];
+    if (!derivatives)
+      n.cost += 0.5 * w * error * error;
+    else if constexpr (L::has_torque)
+      add_state_residual(n, n.force_x[f], w, error);
+    else
+      add_residual(n, n.force_x[f], n.force_u[f], w, error);
+  }
 }
 
 // q, v by eq. 8; τ⁺ = α τ + (1 − α) w by eq. 13.
 template <class L>
-PLIANT_INLINE void step_output_force(const Chain &chain, const Discretisation &disc, const Row<L> &x, const Lanes &u,
-                                     NodeValues<L> &n) {
-    step_joints(chain, disc.dt, x, n.acceleration, n.x_next);
-    if constexpr (L::has_torque) n.x_next.block[2] = x.block[2] * disc.alpha + u * (1 - disc.alpha);
+PLIANT_INLINE void step_output_force(const Chain& chain, const Discretisation& disc, const Row<L>& x, const Lanes& u,
+                                     NodeValues<L>& n) {
+  step_joints(chain, disc.dt, x, n.acceleration, n.x_next);
+  if constexpr (L::has_torque) n.x_next.block[2] = x.block[2] * disc.alpha + u * (1 - disc.alpha);
 }
 
 template <class L>
-[[gnu::noinline]] void output_force_node(const Chain &chain, const ModelConstants &model, const Stage &s, const Row<L> &x,
-                                         const Lanes &u, bool derivatives, NodeValues<L> &n) {
-    constexpr int J = L::J;
-    const Lanes q = x.block[0] * chain.is_joint, qd = x.block[1] * chain.is_joint;
-    OutputPass<J> o;
-    Pass<J> &p = o.pass;
-    begin_pass<J>(chain, s, q, qd, p);
-    if (derivatives) clear_cost(n, chain);
-    n.cost = 0;
-    tool_cost(p.tool, derivatives, n);
-    state_cost(chain, s, x, derivatives, n);
-    if (s.terminal) return;
-    control_cost(s, u, derivatives, n);
-    finish_dynamics<J>(chain, qd, p);
+[[gnu::noinline]] void output_force_node(const Chain& chain, const ModelConstants& model, const Stage& s,
+                                         const Row<L>& x, const Lanes& u, bool derivatives, NodeValues<L>& n) {
+  constexpr int J = L::J;
+  const Lanes q = x.block[0] * chain.is_joint, qd = x.block[1] * chain.is_joint;
+  OutputPass<J> o;
+  Pass<J>& p = o.pass;
+  begin_pass<J>(chain, s, q, qd, p);
+  if (derivatives) clear_cost(n, chain);
+  n.cost = 0;
+  tool_cost(p.tool, derivatives, n);
+  state_cost(chain, s, x, derivatives, n);
+  if (s.terminal) return;
+  control_cost(s, u, derivatives, n);
+  finish_dynamics<J>(chain, qd, p);
 
-    Lanes torque = u;
-    if constexpr (L::has_torque) torque = x.block[2];
-    torque = torque * chain.is_joint;
-    o.dim = s.active ? model.data.contact_dim : 0;
-    o.rigid = model.data.kind != Kind::naive_viscoelastic;
-    make_contact<J>(chain, model.data, s.task, p.kin, p.vel, p.dyn, o.dim, o.contact);
-    deflection<J>(chain, p.kin, o.contact, s, o.dim, o.deflection, o.deflection_q);
-    n.acceleration = multiply<J>(p.Minv.row, torque - p.bias); // free motion
-    if (o.rigid) rigid_force<J>(model.data, n.acceleration, o);
-    else visco_elastic_force<J>(s, o);
-    Lanes contact_torque = zero();
-    for (int f = 0; f < o.dim; ++f) contact_torque += o.contact.J[f] * o.force.value[f];
-    n.acceleration += multiply<J>(p.Minv.row, contact_torque);
+  Lanes torque = u;
+  if constexpr (L::has_torque) torque = x.block[2];
+  torque = torque * chain.is_joint;
+  o.dim = s.active ? model.data.contact_dim : 0;
+  o.rigid = model.data.kind != Kind::naive_viscoelastic;
+  make_contact<J>(chain, model.data, s.task, p.kin, p.vel, p.dyn, o.dim, o.contact);
+  deflection<J>(chain, p.kin, o.contact, s, o.dim, o.deflection, o.deflection_q);
+  n.acceleration = multiply<J>(p.Minv.row, torque - p.bias);  // free motion
+  if (o.rigid)
+    rigid_force<J>(model.data, n.acceleration, o);
+  else
+    visco_elastic_force<J>(s, o);
+  Lanes contact_torque = zero();
+  for (int f = 0; f < o.dim; ++f) contact_torque += o.contact.J[f] * o.force.value[f];
+  n.acceleration += multiply<J>(p.Minv.row, contact_torque);
+  for (int f = 0; f < model.data.contact_dim; ++f) {
+    n.force[f] = f < o.dim ? o.force.value[f] : 0;
+    n.force_rate[f] = 0;
+  }
+  step_output_force(chain, model.disc, x, u, n);
+  const SpatialVec wrench = contact_wrench(o.contact, o.force.value, o.dim);
+  if (derivatives) {
     for (int f = 0; f < model.data.contact_dim; ++f) {
-        n.force[f] = f < o.dim ? o.force.value[f] : 0;
-        n.force_rate[f] = 0;
+      n.force_x[f] = zero_row<L>();
+      n.force_u[f] = zero();
     }
-    step_output_force(chain, model.disc, x, u, n);
-    const SpatialVec wrench = contact_wrench(o.contact, o.force.value, o.dim);
-    if (derivatives) {
-        for (int f = 0; f < model.data.contact_dim; ++f) {
-            n.force_x[f] = zero_row<L>();
-            n.force_u[f] = zero();
-        }
-        LoadedDerivatives<J> ld;
-        loaded_derivatives<J>(chain, p, o.contact, wrench, n.acceleration, o.dim > 0, ld);
-        output_force_tangent(model.data, s, ld, o, n);
-    }
-    gravity_cost<L>(o, s, wrench, torque, u, derivatives, n);
-    output_force_cost(o, s, derivatives, n);
+    LoadedDerivatives<J> ld;
+    loaded_derivatives<J>(chain, p, o.contact, wrench, n.acceleration, o.dim > 0, ld);
+    output_force_tangent(model.data, s, ld, o, n);
+  }
+  gravity_cost<L>(o, s, wrench, torque, u, derivatives, n);
+  output_force_cost(o, s, derivatives, n);
 }
 
-} // namespace pliant::mpc::PLIANT_ISA
+}  // namespace pliant::mpc::PLIANT_ISA
