@@ -69,12 +69,13 @@ def test_the_log_of_a_run_can_be_described_and_drawn(
 
 
 @pytest.mark.study
-def test_the_same_seed_gives_the_same_log_bit_for_bit(tmp_path: Path) -> None:
-    short = ["--case", "figure8-pushed", "--set", "duration=2.0", "--set", "path.ramp=0.5"]
+def test_a_run_is_repeated_bit_for_bit_from_its_configuration(tmp_path: Path) -> None:
+    first = ["stack", "--case", "figure8-pushed", "--set", "duration=2.0", "--set", "path.ramp=0.5", "--seed", "3"]
     logs: list[bytes] = []
-    for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
-        result = pliant("run", *short, "--seed", seed, "--out", name, cwd=tmp_path)
+    for name, asked in (("a", first), ("b", ["a/config.toml"]), ("c", ["a/config.toml", "--seed", "4"])):
+        result = pliant("run", *asked, "--out", name, cwd=tmp_path)
         assert result.returncode == 0, result.stderr
+        assert f"again    pliant run {name}/config.toml" in result.stdout
         (log,) = (tmp_path / name).glob("*.mcap")
         logs.append(log.read_bytes())
     assert logs[0] == logs[1]
@@ -94,6 +95,15 @@ def test_a_configuration_file_and_overrides_reach_the_run(tmp_path: Path) -> Non
     assert config["path"]["ramp"] == 0.5
     assert config["path"]["period"] == 3.0
     assert config["joints"]["friction"] == 0.5  # the case's own value stays
+
+
+def test_show_config_prints_every_value_and_runs_nothing(tmp_path: Path) -> None:
+    result = pliant("run", "stack", "--show-config", "--set", "path.period=3.0", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    rows = {line.split()[0]: line.split()[1:] for line in result.stdout.splitlines()}
+    assert rows["path.period"] == ["3.0", "s", "--set"]
+    assert rows["physics_step"][-1] == "default"
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.study

@@ -56,8 +56,9 @@ def run(
     target: Annotated[
         str,
         typer.Argument(
-            metavar="[TASK.toml|TASK|STUDY|CONFIG.toml]",
-            help="A task file, a task or study by name, or a TOML file with `study = ...` and any of its values.",
+            metavar="[TASK.toml|TASK|STUDY|CONFIG.toml|FILE.mcap]",
+            help="A task file, a task or study by name, a TOML file with `study = ...` and any of its values, or"
+            " config.toml or log of a run, which is repeated.",
         ),
     ] = "stack",
     case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
@@ -70,11 +71,17 @@ def run(
     live: Annotated[
         bool, typer.Option("--live", help="Opens a page beside the run, which then follows wall time.")
     ] = False,
+    show: Annotated[
+        bool, typer.Option("--show-config", help="Prints every value, its unit and where it comes from; runs nothing.")
+    ] = False,
 ) -> None:
-    """Runs one case: a table, figures, a log and summary.json."""
-    from pliant.cli.run import run_command
+    """Runs one case: a table, figures, a log, summary.json, and config.toml, which repeats it."""
+    from pliant.cli.run import run_command, show_config
 
     overrides = {"controller": controller, "robot": robot, "seed": seed, "own_metrics": metric}
+    if show:
+        show_config(_out, target, case, overrides, set_ or [])
+        return
     run_command(_out, _err, target, case, overrides, set_ or [], out, live)
 
 

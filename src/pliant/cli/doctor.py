@@ -68,7 +68,8 @@ def doctor_command(console: Console, config: Path | None) -> None:
 def _check_config(console: Console, path: Path) -> None:
     from pliant.cli.run import resolve
 
-    study, config = resolve(str(path) if path.suffix == ".toml" else f"{path}.toml", None, {}, [])
+    choice = resolve(str(path) if path.suffix == ".toml" else f"{path}.toml", None, {}, [])
+    study, config = choice.study, choice.config
     warnings = study.build(config).warnings
     for warning in warnings:
         console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False, soft_wrap=True)

@@ -39,12 +39,12 @@ def live_command(
         return
     from pliant.live.server.launch import serve_live
 
-    study, config = resolve(target, case, overrides, assignments)
+    choice = resolve(target, case, overrides, assignments)
     folder = out or Path("pliant-out") / "live"
     try:
         serve_live(
-            study.name,
-            config,
+            choice.study.name,
+            choice.config,
             host,
             port,
             folder,

@@ -13,8 +13,10 @@ from pliant.cli.progress import progress_bar
 from pliant.cli.report import print_results, save_summary
 from pliant.errors import RunFailedError
 from pliant.experiments.base import CaseConfig, Experiment, Study, check_windows
-from pliant.experiments.choice import chosen
+from pliant.experiments.choice import Choice, chosen
 from pliant.experiments.config import assigned
+from pliant.experiments.origins import origins
+from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
 from pliant.telemetry.output import output_folder
 
@@ -35,7 +37,8 @@ def run_command(
         PliantError: bad input; nothing was run.
         RunFailedError: the run stopped early; what was recorded is kept.
     """
-    study, config = resolve(target, case, overrides, assignments)
+    choice = resolve(target, case, overrides, assignments)
+    study, config = choice.study, choice.config
     check_windows(config)
     folder = output_folder(out or default_folder(study, config.case))
     experiment = study.build(config)
@@ -49,14 +52,16 @@ def run_command(
         result = run_case(study, config, folder, progress=progress, **more)
     _warn(complain, result.warnings[len(experiment.warnings) :])
     summary = save_summary(study, [result], folder)
+    again = write_config(study, config, folder)
     if result.failure is not None:
         if result.metrics:  # it reached its end, and its numbers may tell why it is none the less a failure
             print_results(console, study, [result])
         raise RunFailedError(f"{result.failure}; the log until then is {result.log}")
     print_results(console, study, [result])
-    console.print(f"\nlog      {result.log}\nsummary  {summary}", markup=False, highlight=False, soft_wrap=True)
-    for figure in result.figures:
-        console.print(f"figure   {figure}", markup=False, highlight=False, soft_wrap=True)
+    files = [("log", result.log), ("summary", summary), *(("figure", figure) for figure in result.figures)]
+    console.print()
+    for what, file in (*files, ("again", f"pliant run {again}")):
+        console.print(f"{what:7s}  {file}", markup=False, highlight=False, soft_wrap=True)
 
 
 def _warn(complain: Console, warnings: Sequence[str]) -> None:
@@ -90,11 +95,26 @@ def _page(
         yield {"experiment": page.experiment, "observers": page.observers, "pace": page.pace}
 
 
-def resolve(
-    target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]
-) -> tuple[Study[Any], CaseConfig]:
-    """The study and the checked configuration that a user means on the command line. Raises ConfigError."""
-    return chosen(target, case, overrides, assigned(assignments))
+def show_config(
+    console: Console,
+    target: str,
+    case: str | None,
+    overrides: Mapping[str, Any],
+    assignments: Sequence[str],
+) -> None:
+    """Prints every value of a run, its unit and where it comes from; runs nothing. Raises PliantError: bad input."""
+    choice = resolve(target, case, overrides, assignments)
+    rows = origins(choice, choice.study.build(choice.config).parameters)
+    table = [("key", "value", "unit", "from"), *((row.key, row.shown, row.unit, row.origin) for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for cells in table:
+        line = "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
+        console.print(line.rstrip(), markup=False, highlight=False, soft_wrap=True)
+
+
+def resolve(target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]) -> Choice:
+    """The run that a user means on the command line. Raises ConfigError."""
+    return chosen(target, case, overrides, assigned(assignments), ("an option", "--set"))
 
 
 def default_folder(study: Study[Any], case: str) -> Path:

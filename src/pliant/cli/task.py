@@ -102,7 +102,7 @@ def check_command(
     from pliant.telemetry.plots import save
     from pliant.wiring.reach_figure import reach_figure
 
-    _, config = resolve(target, case, overrides, assignments)
+    config = resolve(target, case, overrides, assignments).config
     if not isinstance(config, TaskCase):
         raise ConfigError(f"{target} is a study; `pliant task check` checks a task file")
     found = checked_reach(config)

@@ -61,6 +61,11 @@ class CaseConfig(Config):
         return names
 
     @property
+    def control_by_name(self) -> bool:
+        """Whether `control` holds a table for each controller, by its name; otherwise it is of the one that runs."""
+        return False
+
+    @property
     def clock(self) -> Mapping[str, float]:
         """Name → s of the steps that a run is made of; a run that would not end for years is refused by them."""
         return {}

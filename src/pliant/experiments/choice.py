@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,39 +11,73 @@ from pliant.errors import ConfigError, options
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.config import merged, read_toml
 from pliant.experiments.registry import get_study
+from pliant.experiments.repeat import from_config, from_log, is_whole
+
+Layer = tuple[str, Mapping[str, Any]]
+"""where values come from, for people, and the values, nested"""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One run that was asked for."""
+
+    study: Study[Any]
+    config: CaseConfig
+    base: str
+    """where values come from that no layer gives and that differ from the defaults, for people"""
+    layers: tuple[Layer, ...]
+    """what was laid over the case, the last of which wins"""
 
 
 def chosen(
-    target: str, case: str | None, overrides: Mapping[str, Any], changes: Mapping[str, Any]
-) -> tuple[Study[Any], CaseConfig]:
+    target: str,
+    case: str | None,
+    overrides: Mapping[str, Any],
+    changes: Mapping[str, Any],
+    names: tuple[str, str] = ("overrides", "changes"),
+) -> Choice:
     """The study and the checked configuration: the case's defaults, then the file, then overrides, then changes.
 
     Args:
-        target: name of a study or of a task of the catalogue, path of a task file, or path of a TOML file with
-            `study = …` and any of its values.
+        target: name of a study or of a task of the catalogue, path of a task file, path of a TOML file with
+            `study = …` and any of its values, or the `config.toml` or log of a run, which is then repeated.
         case: of the study; None: the file's, or the study's first.
         overrides: those that are None count as not given.
         changes: nested.
+        names: what a user calls the last two.
 
     Raises:
         ConfigError: an unknown study, case or key, or a value that breaks a rule.
+        OutputError: a file that ends in `.mcap` is no log.
     """
+    over = ((names[0], _given(overrides)), (names[1], changes))
+    if target.endswith(".mcap"):
+        return _repeated(target, case, from_log(Path(target)), over)
     values: dict[str, Any] = {}
+    name = target
     if target.endswith(".toml") and "study" in (found := read_toml(Path(target))):
-        target, values = str(found.pop("study")), found
-    study = get_study(target)
+        if is_whole(found):
+            return _repeated(target, case, from_config(Path(target), found), over)
+        name, values = str(found.pop("study")), found
+    study = get_study(name)
     from_file = values.pop("case", None)
     if not isinstance(from_file, str | None):
         raise ConfigError(f"{target}: 'case' is a name, got {from_file!r}; {options(study.cases)}")
-    return study, configured(study, case or from_file, [values, _given(overrides), changes])
+    base = study.case(case or from_file or next(iter(study.cases)))
+    return _laid(study, base, f"case {base.case}", ((target, values), *over))
 
 
-def configured(study: Study[Any], case: str | None, layers: list[Mapping[str, Any]]) -> CaseConfig:
-    """A case of a study (None: its first) with layers of nested changes, the last of which wins. Raises ConfigError."""
-    config: CaseConfig = study.case(case or next(iter(study.cases)))
-    for layer in layers:
-        config = merged(config, layer)
-    return config
+def _repeated(target: str, case: str | None, run: tuple[Study[Any], CaseConfig], over: tuple[Layer, ...]) -> Choice:
+    study, config = run
+    if case not in (None, config.case):
+        raise ConfigError(f"{target} holds one run, of case {config.case!r}; --case {case} is another")
+    return _laid(study, config, target, over)
+
+
+def _laid(study: Study[Any], config: CaseConfig, base: str, layers: tuple[Layer, ...]) -> Choice:
+    for _, values in layers:
+        config = merged(config, values)
+    return Choice(study, config, base, layers)
 
 
 def _given(overrides: Mapping[str, Any]) -> dict[str, Any]:

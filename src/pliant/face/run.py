@@ -11,6 +11,7 @@ from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.choice import chosen
 from pliant.experiments.pool import open_pool
+from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
 from pliant.experiments.sweep import compared, sweep
 from pliant.experiments.tuning import nested
@@ -33,13 +34,13 @@ def run(
     """Runs one case in simulation and measures it.
 
     Args:
-        what: name of a study or a task, or path of a TOML file.
+        what: name of a study or a task, path of a TOML file, or `config.toml` or log of a run, which is repeated.
         case: of the study; None: its first.
         controller: name, `my_module:MyController` or `my_file.py:MyController`; None: the case's.
         robot: catalogue name, or path of a URDF or MJCF file; None: the case's.
         seed: of every random draw; None: the case's.
         metrics: of your own beside the study's, `my_module:metric` or `my_file.py:metric`.
-        out: folder for log, figures and summary.json; None: nothing is written.
+        out: folder for log, figures, summary.json and config.toml; None: nothing is written.
         changes: any other value of the configuration, nested: `duration=2.0`, `control={"horizon": 3}`, or with a
             dotted key `**{"control.horizon": 3}`.
 
@@ -50,7 +51,8 @@ def run(
         PliantError: bad input, in one sentence; nothing was run.
     """
     overrides = {"controller": controller, "robot": robot, "seed": seed, "own_metrics": metrics}
-    study, config = chosen(str(what), case, overrides, nested(changes))
+    asked = chosen(str(what), case, overrides, nested(changes))
+    study, config = asked.study, asked.config
     if out is not None:
         return _kept(study, config, output_folder(Path(out)))
     with tempfile.TemporaryDirectory() as folder:
@@ -89,8 +91,9 @@ def compare(
     """
     if not controllers or seeds < 1:
         raise ConfigError(f"a comparison needs a controller and a seed, got {len(controllers)} and {seeds}")
-    study, base = chosen(str(what), case, {"robot": robot, "own_metrics": metrics}, nested(changes))
-    asked = compared(base, controllers, seeds)
+    choice = chosen(str(what), case, {"robot": robot, "own_metrics": metrics}, nested(changes))
+    study = choice.study
+    asked = compared(choice.config, controllers, seeds)
     for config in asked[::seeds]:
         study.build(config)  # what is wrong with a controller is said before anything runs
     made: dict[tuple[str, int], Any] = {}
@@ -104,6 +107,7 @@ def _kept(study: Study[Any], config: CaseConfig, folder: Path) -> Result:
     found = run_case(study, config, folder)
     result = Result(study, found, _log(found.log))
     save(result, folder)
+    write_config(study, config, folder)
     return result
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from pliant.entries import ControllerConfig
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.telemetry.schema import Channel
@@ -25,3 +26,5 @@ class Experiment:
     """s after which there is nothing more to do; None: it goes on"""
     warnings: tuple[str, ...] = ()
     """what is unsafe about the parameters, in sentences"""
+    parameters: ControllerConfig | None = None
+    """of the controller, as it was built; None: not known"""

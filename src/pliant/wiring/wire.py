@@ -86,6 +86,7 @@ def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offe
             *entry.advise(robot, parameters, believed.period),
             *offer.warnings,
         ),
+        parameters=parameters,
     )
 
 

@@ -39,6 +39,10 @@ class TaskCase(TaskParts, CaseConfig):
     )
 
     @property
+    def control_by_name(self) -> bool:
+        return True
+
+    @property
     def entry(self) -> ControllerEntry[Any]:
         """The chosen controller."""
         return find_controller(self.controller)

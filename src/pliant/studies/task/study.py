@@ -5,8 +5,9 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from pliant.configuration import merged, overlaid
+from pliant.configuration import merged, overlaid, validated
 from pliant.errors import ConfigError
 from pliant.experiments.base import Experiment, Study
 from pliant.experiments.tuning import nested
@@ -83,6 +84,12 @@ class TaskStudy(Study[TaskCase]):
         made = planned(config)
         surface = true_surface(config, made.surface, made.path)
         return signals_of(log, config.tool.frame, surface.geometry, made.robot.torque_limit)
+
+
+def whole(name: str, values: Mapping[str, Any]) -> tuple[TaskStudy, TaskCase]:
+    """A task without its file. Args: name: of the task; values: all of one run. Raises ConfigError."""
+    case = validated(TaskCase, values)
+    return TaskStudy(name, {case.case: case}), case
 
 
 def study_of(name: str) -> TaskStudy:

@@ -1,0 +1,106 @@
+"""Every value of a run: its unit, and where it comes from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic_core import to_jsonable_python
+
+from pliant.entries import ControllerConfig
+from pliant.experiments.choice import Choice
+from pliant.wiring.registry import find_controller
+
+_LONGEST = 60  # characters
+_UNKNOWN = object()
+_CONTROL = "control"
+"""table of a configuration that changes the controller's parameters"""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """One value of a run."""
+
+    key: str
+    """dotted, as `--set` wants it"""
+    value: Any
+    unit: str
+    origin: str
+    """a file, an option, "default", "suggested" (by the controller, for this robot and task), or the case"""
+
+    @property
+    def shown(self) -> str:
+        """The value as `--set` would take it, shortened where it is long."""
+        text = json.dumps(to_jsonable_python(self.value), ensure_ascii=False)
+        return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]:
+    """Every value of a run, the controller's as they were derived for it.
+
+    Args:
+        choice: what was asked for.
+        parameters: of the controller, as it was built; None: not known.
+    """
+    config = choice.config
+    found = [
+        _origin(choice, path, value, unit, default, choice.base)
+        for path, value, unit, default in _leaves(config, None, ())
+        if path[0] != _CONTROL
+    ]
+    if parameters is None:
+        return found
+    above = (_CONTROL, config.controller) if config.control_by_name else (_CONTROL,)
+    default = find_controller(config.controller).default
+    return found + [
+        _origin(choice, (*above, *path), value, unit, usual, "suggested")
+        for path, value, unit, usual in _leaves(parameters, default, ())
+    ]
+
+
+def _origin(choice: Choice, path: tuple[str, ...], value: Any, unit: str, default: Any, else_: str) -> Origin:
+    key = ".".join(path)
+    for name, values in reversed(choice.layers):
+        if _gives(values, path):
+            return Origin(key, value, unit, name)
+    return Origin(key, value, unit, "default" if value == default else else_)
+
+
+def _gives(values: Any, path: tuple[str, ...]) -> bool:
+    for part in path:
+        if not isinstance(values, Mapping):
+            return True  # a whole table was replaced
+        if part not in values:
+            return False
+        values = values[part]
+    return True
+
+
+def _leaves(
+    config: BaseModel, default: BaseModel | None, above: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], Any, str, Any]]:
+    """Key, value, unit and default of everything below. Args: default: None: what the fields say."""
+    for name, about in type(config).model_fields.items():
+        path, value = (*above, name), getattr(config, name)
+        usual = getattr(default, name, _UNKNOWN) if default is not None else _default(about)
+        if isinstance(value, BaseModel):
+            yield from _leaves(value, usual if type(usual) is type(value) else None, path)
+        elif isinstance(value, Mapping) and any(isinstance(inner, BaseModel) for inner in value.values()):
+            for key, inner in value.items():
+                if isinstance(inner, BaseModel):
+                    yield from _leaves(inner, None, (*path, str(key)))
+        else:
+            yield path, value, _unit(about), usual
+
+
+def _default(about: FieldInfo) -> Any:
+    return _UNKNOWN if about.is_required() else about.get_default(call_default_factory=True, validated_data={})
+
+
+def _unit(about: FieldInfo) -> str:
+    extra = about.json_schema_extra
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
