@@ -11,10 +11,13 @@ import time
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from pliant.cli.app import app
 from pliant.telemetry import Log
 
 PLIANT = [sys.executable, "-c", "from pliant.cli import main; main()"]
+CLI = CliRunner(env={"COLUMNS": "160"})
 SHORT = ["--set", "duration=3.4", "--set", "path.ramp=1.0"]
 
 
@@ -73,8 +76,9 @@ def test_a_run_is_repeated_bit_for_bit_from_its_configuration(tmp_path: Path) ->
     first = ["stack", "--case", "figure8-pushed", "--set", "duration=2.0", "--set", "path.ramp=0.5", "--seed", "3"]
     logs: list[bytes] = []
     for name, asked in (("a", first), ("b", ["a/config.toml"]), ("c", ["a/config.toml", "--seed", "4"])):
-        result = pliant("run", *asked, "--out", name, cwd=tmp_path)
+        result = pliant("run", *asked, "--no-figures", "--out", name, cwd=tmp_path)
         assert result.returncode == 0, result.stderr
+        assert not list((tmp_path / name).glob("*.png"))
         assert f"again    pliant run {name}/config.toml" in result.stdout
         (log,) = (tmp_path / name).glob("*.mcap")
         logs.append(log.read_bytes())
@@ -87,7 +91,7 @@ def test_a_configuration_file_and_overrides_reach_the_run(tmp_path: Path) -> Non
     (tmp_path / "mine.toml").write_text(
         'study = "stack"\ncase = "figure8-hardware"\nduration = 2.5\npreset = "table-1-robot"\n[path]\nramp = 0.5\n'
     )
-    result = pliant("run", "mine.toml", "--set", "path.period=3.0", "--out", "out", cwd=tmp_path)
+    result = pliant("run", "mine.toml", "--no-figures", "--set", "path.period=3.0", "--out", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     (log,) = (tmp_path / "out").glob("*.mcap")
     config = Log.open(log).info.config
@@ -97,9 +101,10 @@ def test_a_configuration_file_and_overrides_reach_the_run(tmp_path: Path) -> Non
     assert config["joints"]["friction"] == 0.5  # the case's own value stays
 
 
-def test_show_config_prints_every_value_and_runs_nothing(tmp_path: Path) -> None:
-    result = pliant("run", "stack", "--show-config", "--set", "path.period=3.0", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+def test_show_config_prints_every_value_and_runs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = CLI.invoke(app, ["run", "stack", "--show-config", "--set", "path.period=3.0"])
+    assert result.exit_code == 0, result.output
     rows = {line.split()[0]: line.split()[1:] for line in result.stdout.splitlines()}
     assert rows["path.period"] == ["3.0", "s", "--set"]
     assert rows["physics_step"][-1] == "default"
@@ -113,7 +118,7 @@ def test_ctrl_c_keeps_what_was_recorded(tmp_path: Path) -> None:
     deadline = time.monotonic() + 120.0
     while time.monotonic() < deadline:
         logs = list((tmp_path / "out").glob("*.mcap"))
-        if logs and logs[0].stat().st_size > 1_000_000:
+        if logs and logs[0].stat().st_size > 300_000:
             break
         time.sleep(0.2)
     process.send_signal(signal.SIGINT)
@@ -182,11 +187,11 @@ def test_bad_input_gets_one_sentence_and_exit_code_2(
     assert "Traceback" not in captured.err
 
 
-def test_doctor_and_list_say_what_there_is(tmp_path: Path) -> None:
-    doctor = pliant("doctor", cwd=tmp_path)
-    assert doctor.returncode == 0, doctor.stderr
+def test_doctor_and_list_say_what_there_is() -> None:
+    doctor = CLI.invoke(app, ["doctor"])
+    assert doctor.exit_code == 0, doctor.output
     assert "mujoco" in doctor.stdout
-    listed = pliant("list", cwd=tmp_path)
+    listed = CLI.invoke(app, ["list"])
     for name in ("lwr4", "iiwa14", "leg3", "operational-space", "figure8-wall"):
         assert name in listed.stdout
 
@@ -196,7 +201,7 @@ def test_doctor_warns_of_an_unsafe_configuration(tmp_path: Path) -> None:
         'study = "stack"\ncase = "figure8-hardware"\n'
         "[control.tasks.ee.translation]\nstiffness = 60000\nforce_max = 4000\n"
     )
-    result = pliant("doctor", "--config", "stiff.toml", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = CLI.invoke(app, ["doctor", "--config", str(tmp_path / "stiff.toml")])
+    assert result.exit_code == 0, result.output
     assert "oscillates" in result.stdout
     assert "safe: stiffness" in result.stdout

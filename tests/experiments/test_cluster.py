@@ -5,12 +5,15 @@ from __future__ import annotations
 import random
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
-from pliant.errors import ConfigError
+from pliant.errors import ConfigError, RunFailedError
+from pliant.experiments import cluster
 from pliant.experiments.pool import open_pool
 
 GREETINGS = {
@@ -69,3 +72,39 @@ def test_a_port_where_nobody_listens_is_one_sentence() -> None:
 def test_an_address_is_written_in_one_way(address: str) -> None:
     with pytest.raises(ConfigError, match="tcp://HOST:PORT"), open_pool(1, address):
         pass
+
+
+class _LostAnswer:
+    """A future whose worker died with the answer, and that no worker takes up again."""
+
+    status, key = "finished", "lost"
+
+    def add_done_callback(self, call: Callable[[object], None]) -> None:
+        call(self)
+
+    def exception(self, timeout: float) -> None:
+        raise TimeoutError
+
+
+class _Client:
+    """A client of a scheduler without workers."""
+
+    status, scheduler = "running", SimpleNamespace(identity=None)
+
+    def submit(self, *_: object, **__: object) -> _LostAnswer:
+        return _LostAnswer()
+
+    def sync(self, *_: object, **__: object) -> dict[str, object]:
+        return {"workers": {}}
+
+
+def test_an_answer_that_was_lost_with_its_worker_is_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, seconds in (("_ALIVE", 0.0), ("_GONE", 0.1)):
+        monkeypatch.setattr(cluster, name, seconds)
+    pool = cluster._DaskPool(cast("Any", _Client()), "tcp://a:1", threading.Event())
+    with pytest.raises(RunFailedError, match="all workers of the dask scheduler tcp://a:1 went away"):
+        list(pool(abs, [1]))
+    stop = threading.Event()
+    stop.set()
+    with pytest.raises(KeyboardInterrupt):
+        list(cluster._DaskPool(cast("Any", _Client()), "tcp://a:1", stop)(abs, [1]))

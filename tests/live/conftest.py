@@ -31,10 +31,10 @@ _FLAGS = [
     "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
     "--disable-backgrounding-occluded-windows", "--disable-renderer-backgrounding",
-    "--disable-background-timer-throttling",
+    "--disable-background-timer-throttling", "--disable-extensions",
 ]  # fmt: skip
 _FEW_PIXELS = 0.35  # a unit of length of the page: the processor draws here
-PATIENCE = 180.0  # s: other work may share the machine
+PATIENCE = 100.0  # s: other work may share the machine
 
 
 def until(holds: Callable[[], object], what: str, seconds: float = PATIENCE) -> None:
@@ -116,7 +116,7 @@ def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     folder = tmp_path_factory.mktemp("logs")
     with PageServer("127.0.0.1", 0) as server, live_page(server, folder) as page:
         page.run.start("stack", wall_case())
-        thread = threading.Thread(target=page.serve)
+        thread = threading.Thread(target=page.serve, daemon=True)
         thread.start()
         tab = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=pixels())
         tab.set_default_timeout(1e3 * PATIENCE)
@@ -130,4 +130,4 @@ def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         finally:
             tab.close()
             page.stop()
-            thread.join()
+            thread.join(PATIENCE)

@@ -13,6 +13,8 @@ from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
 from tests.live.conftest import PATIENCE, Live, pixels, until
 
+pytestmark = pytest.mark.study
+
 
 def drag(live: Live, label: str, share: float) -> None:
     """Drags the thumb of a slider with the mouse. Args: label: how it begins; share: of the track, from the left."""
@@ -147,7 +149,7 @@ def test_a_log_on_the_page_with_a_time_slider(live: Live) -> None:
     shown = LoggedScene(Log.open(sorted(live.folder.glob("*.mcap"))[0]))
     with PageServer("127.0.0.1", 0) as server:
         replay = ReplayPage(server, shown)
-        thread = threading.Thread(target=replay.serve)
+        thread = threading.Thread(target=replay.serve, daemon=True)
         thread.start()
         live.tab.goto(server.url)  # the page of the loop lives on without a browser
         try:
@@ -160,7 +162,7 @@ def test_a_log_on_the_page_with_a_time_slider(live: Live) -> None:
             live.shoot("replay")
         finally:
             replay.stop()
-            thread.join()
+            thread.join(PATIENCE)
             live.tab.goto(live.server.url)
     live.tab.get_by_text("playing").wait_for()
 

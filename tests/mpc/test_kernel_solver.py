@@ -164,7 +164,7 @@ def test_threads_do_not_disturb_each_other() -> None:
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join()
+        thread.join(100.0)
     for seed in range(3):
         np.testing.assert_array_equal(together[seed], alone[seed])
 
@@ -179,7 +179,7 @@ def test_interpreter_runs_while_solving() -> None:
     while worker.is_alive():
         ticks.append(time.perf_counter())
         time.sleep(1e-4)
-    worker.join()
+    worker.join(100.0)
     assert len(ticks) > 10
 
 

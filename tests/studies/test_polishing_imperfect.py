@@ -20,7 +20,7 @@ from pliant.studies.polishing.paper import STOCK
 from pliant.studies.polishing.tables import report
 from pliant.telemetry.summary import Metric
 
-DRAWS = ((0.1, 900), (0.1, 901), (-0.1, 902), (-0.1, 903))  # tilt in rad, seed: 2 tilts × 2 seeds
+DRAWS = ((0.1, 900), (-0.1, 902))  # tilt in rad, seed; ten seeds of seven tilts are `pliant study polishing`
 BEST = "offset-free-mpc"
 
 

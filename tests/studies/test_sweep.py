@@ -145,7 +145,7 @@ def test_a_killed_command_loses_the_running_runs_only_and_a_second_one_is_told_w
     with pytest.raises(OutputError, match=rf"in use by process {process.pid} \(`pliant study toy"):
         resume_command(Console(), Console(), tmp_path, None, 1, None)
     process.kill()
-    process.communicate()
+    process.communicate(timeout=60)
     before = rows(tmp_path)["seed"].to_pylist()
     assert len(before) >= 2
     code, _, errors = study("--resume", tmp_path, "--jobs", 2)

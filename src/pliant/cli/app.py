@@ -71,6 +71,7 @@ def run(
     live: Annotated[
         bool, typer.Option("--live", help="Opens a page beside the run, which then follows wall time.")
     ] = False,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Whether to draw.")] = True,
     show: Annotated[
         bool, typer.Option("--show-config", help="Prints every value, its unit and where it comes from; runs nothing.")
     ] = False,
@@ -82,7 +83,7 @@ def run(
     if show:
         show_config(_out, target, case, overrides, set_ or [])
         return
-    run_command(_out, _err, target, case, overrides, set_ or [], out, live)
+    run_command(_out, _err, target, case, overrides, set_ or [], out, live, figures)
 
 
 @app.command()

@@ -30,8 +30,9 @@ def run_command(
     assignments: Sequence[str],
     out: Path | None,
     live: bool = False,
+    figures: bool = True,
 ) -> None:
-    """Runs one case. Args: live: with a page that shows and steers it, paced to wall time.
+    """Runs one case. Args: live: with a page that shows and steers it, paced to wall time; figures: whether to draw.
 
     Raises:
         PliantError: bad input; nothing was run.
@@ -49,7 +50,7 @@ def run_command(
         _page(console, complain, study, config, experiment, folder, live) as more,
         progress_bar(complain, f"{study.name} {config.case} · {config.controller}") as progress,
     ):
-        result = run_case(study, config, folder, progress=progress, **more)
+        result = run_case(study, config, folder, progress=progress, figures=figures, **more)
     _warn(complain, result.warnings[len(experiment.warnings) :])
     summary = save_summary(study, [result], folder)
     again = write_config(study, config, folder)

@@ -104,17 +104,27 @@ class _DaskPool:
             self._check_alive()
 
     def _outcome(self, future: Future[Any]) -> Any:
-        """What a task returned. A task whose worker dies is started again by the scheduler, three times."""
+        """What a task returned. A task whose worker dies is started again by the scheduler, three times.
+
+        What it returned stays with its worker until it is fetched; a worker that dies in between makes the task one
+        that has not ended, and the scheduler waits for another worker as long as it takes.
+        """
         from distributed import KilledWorker
 
-        if future.status == "cancelled":
-            raise self._gone("the dask scheduler", "went away")
-        try:
-            error = future.exception()
-            if error is None:
-                return future.result()
-        except OSError:  # the connection broke while the answer was fetched
-            raise self._gone("the dask scheduler", "went away") from None
+        while True:
+            if future.status == "cancelled":
+                raise self._gone("the dask scheduler", "went away")
+            try:
+                error = future.exception(timeout=_ALIVE)
+                if error is None:
+                    return future.result(timeout=_ALIVE)
+                break
+            except TimeoutError:
+                if self._interrupted.is_set():
+                    raise KeyboardInterrupt from None
+                self._check_alive()
+            except OSError:  # the connection broke while the answer was fetched
+                raise self._gone("the dask scheduler", "went away") from None
         if isinstance(error, KilledWorker):
             return Lost(f"its process died, {error.allowed_failures + 1} times in a row")
         return Lost(f"the worker could not run it: {type(error).__name__}: {error}")

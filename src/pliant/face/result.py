@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.figure import Figure
 from rich.console import Console
 
 from pliant.experiments import base
@@ -20,6 +19,9 @@ from pliant.telemetry.log import Log
 from pliant.telemetry.plots.log import figures
 from pliant.telemetry.summary import Metric, Summary
 from pliant.telemetry.table import summary_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _WIDTH = 140  # columns of a table as text
 

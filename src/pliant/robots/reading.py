@@ -8,7 +8,6 @@ from xml.etree import ElementTree
 
 from pliant.errors import RobotError
 from pliant.robots.description import Description
-from pliant.robots.mjcf import read_mjcf
 from pliant.robots.urdf import read_urdf
 
 _REMEDIES = {
@@ -36,6 +35,8 @@ def read_description(path: Path, locked: Collection[str]) -> Description:
     if tag == "robot":
         return read_urdf(path, root, locked)
     if tag == "mujoco":
+        from pliant.robots.mjcf import read_mjcf  # here: a URDF needs no MuJoCo, which takes a moment to import
+
         return read_mjcf(path, locked)
     known = f"it is {_REMEDIES[tag.lower()]}" if tag.lower() in _REMEDIES else f"its root element is <{tag}>"
     raise RobotError(f"{path} must be a URDF (<robot>) or an MJCF (<mujoco>); {known}")

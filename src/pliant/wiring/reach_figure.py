@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.references.reach import ReachCheck
 from pliant.telemetry.plots import Curve, Panel, time_series
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def reach_figure(check: ReachCheck, title: str = "") -> Figure:

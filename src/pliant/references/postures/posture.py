@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,13 +11,20 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError, PliantError, options
 from pliant.references.postures.ik_aico import AicoSolver
-from pliant.references.postures.ik_mink import MinkSolver
 from pliant.references.postures.inverse_kinematics import Box, PoseSolver, Target, joint_box
 from pliant.references.source import FrameMotion
 from pliant.robot import Robot
 from pliant.spatial import Array
 
-METHODS: dict[str, type[PoseSolver]] = {"mink": MinkSolver, "aico": AicoSolver}
+
+def mink_solver(robot: Robot, frame: str) -> PoseSolver:
+    """`MinkSolver`, whose module is imported now: mink takes longer to import than the rest of pliant."""
+    from pliant.references.postures.ik_mink import MinkSolver
+
+    return MinkSolver(robot, frame)
+
+
+METHODS: dict[str, Callable[[Robot, str], PoseSolver]] = {"mink": mink_solver, "aico": AicoSolver}
 """name → method"""
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.experiments.base import Result
 from pliant.experiments.config import merged
 from pliant.studies.haptic.config import HapticConfig, Material
 from pliant.telemetry.plots import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 DELAYS = (1, 2, 3, 5, 8, 12, 20, 30, 50)
 """ms"""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.experiments.base import Experiment, Result
 from pliant.experiments.runner import file_stem
@@ -20,6 +20,9 @@ from pliant.studies.haptic.parameters import parameter_figure
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
 from pliant.telemetry.plots.pictures import picture_row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _FORCE, _TRACE = (0.76, 0.18, 0.18, 1.0), (0.95, 0.45, 0.10, 0.8)
 _METRES_PER_NEWTON = 0.0025

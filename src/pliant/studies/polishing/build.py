@@ -10,8 +10,8 @@ import pinocchio as pin
 from pliant.errors import ConfigError
 from pliant.experiments.model_error import with_mass_error
 from pliant.interfaces import Plant
-from pliant.references.postures.ik_mink import MinkSolver
 from pliant.references.postures.inverse_kinematics import Target, joint_box
+from pliant.references.postures.posture import mink_solver
 from pliant.robot import Robot
 from pliant.simulation import ForceSensor, ImperfectPlant, MujocoPlant, Push, Scene, Surface, table
 from pliant.simulation.plant import SPEED_STOP
@@ -89,7 +89,7 @@ def _start(config: PolishingConfig, robot: Robot) -> Array:
     Raises:
         ConfigError: the robot cannot take that pose.
     """
-    solver = MinkSolver(robot, FRAME)
+    solver = mink_solver(robot, FRAME)
     target = Target(touching_point(config) + np.array([0.0, 0.0, config.task.start]), TURNED_DOWN)
     q = solver.solve(robot.home, robot.home, joint_box(robot), target)
     distance, angle = solver.shortfall(q, target)

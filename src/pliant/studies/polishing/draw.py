@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.experiments.base import Experiment
 from pliant.experiments.runner import file_stem
@@ -16,6 +16,9 @@ from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
 from pliant.telemetry.plots.pictures import picture_row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _METRES_PER_NEWTON = 0.004
 _CAMERA = Camera(look_at=(0.50, 0.0, 0.24), distance=1.45, azimuth=128.0, elevation=-16.0)

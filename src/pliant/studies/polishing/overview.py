@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.experiments.base import Result
 from pliant.spatial import Array
@@ -15,6 +15,9 @@ from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.studies.polishing.targets import targets_of
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, dots, save, sweep, time_series
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 COMPARED = ("square", "slow", "slow-tilted", "fast-tilted", "fast-pushed")
 """cases whose controllers are drawn over each other, and the figure of the paper that shows the same on its robot"""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.controllers.attractor import Attractor, Law
 from pliant.controllers.profiles import ForceProfile
@@ -31,6 +31,9 @@ from pliant.telemetry.plots import (
     task_path,
 )
 from pliant.telemetry.summary import Metric
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 BALANCE_FORCES = (0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0)
 """N, strengths of the elbow's task that the balance case runs through"""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.figure import Figure
 
 from pliant.experiments.base import Experiment
 from pliant.experiments.runner import file_stem
@@ -18,6 +18,9 @@ from pliant.studies.task.measure import Signals
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
 from pliant.telemetry.plots.pictures import picture_row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _METRES_PER_NEWTON = 0.004
 _REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (0.76, 0.18, 0.18, 1.0)

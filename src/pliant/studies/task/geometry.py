@@ -9,9 +9,8 @@ from pathlib import Path as FilePath
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.references.postures.ik_mink import MinkSolver
 from pliant.references.postures.inverse_kinematics import Target, joint_box
-from pliant.references.postures.posture import freedom
+from pliant.references.postures.posture import freedom, mink_solver
 from pliant.references.toolpaths.files import read_path
 from pliant.references.toolpaths.patterns import PATTERNS
 from pliant.references.toolpaths.pressing import ForceProfile
@@ -83,7 +82,7 @@ def good_place(robot: Robot, frame: str, normal: Array, curvature: float) -> Arr
     if arm is None:
         raise ConfigError(f"robot {robot.name!r} forks at its base: say where the part stands by surface.pose")
     length = arm.reach
-    solver, box = MinkSolver(robot, frame), joint_box(robot)
+    solver, box = mink_solver(robot, frame), joint_box(robot)
     direction = np.array([math.cos(ahead), math.sin(ahead), 0.0])
 
     def free(at: Array, step: float) -> float:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.telemetry.plots import style
 from pliant.telemetry.summary import Metric
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 def compare(groups: Mapping[str, Sequence[Metric]], ylabel: str, title: str = "", log_scale: bool = False) -> Figure:
@@ -43,7 +47,7 @@ def compare(groups: Mapping[str, Sequence[Metric]], ylabel: str, title: str = ""
     return made
 
 
-def _bar(ax: style.Axes, at: float, width: float, metric: Metric, colour: str) -> None:
+def _bar(ax: Axes, at: float, width: float, metric: Metric, colour: str) -> None:
     if np.isfinite(metric.value):
         ax.bar(at, metric.value, width, color=colour, alpha=0.9)
         if metric.std is not None and np.isfinite(metric.std):

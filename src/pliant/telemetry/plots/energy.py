@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.spatial import Array
 from pliant.telemetry.plots import style
 from pliant.telemetry.plots.series import Curve, Panel, time_series
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def energy_ledger(

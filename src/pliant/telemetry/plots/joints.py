@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.spatial import Array
 from pliant.telemetry.plots import style
 from pliant.telemetry.plots.series import Curve, Panel, mark_phases, thin, time_series
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _DEGREES = 180.0 / np.pi
 
@@ -73,7 +77,7 @@ def joint_torques(
     return made
 
 
-def _draw_limit(ax: style.Axes, limit: float) -> None:
+def _draw_limit(ax: Axes, limit: float) -> None:
     low, high = ax.get_ylim()
     for bound in (-limit, limit):
         if low - 0.2 * (high - low) <= bound <= high + 0.2 * (high - low):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.telemetry.describe import frames
 from pliant.telemetry.log import Log
@@ -14,6 +14,9 @@ from pliant.telemetry.plots import style
 from pliant.telemetry.plots.joints import joint_torques, posture_difference
 from pliant.telemetry.plots.path import Path2D, task_path
 from pliant.telemetry.plots.series import Curve, Panel, time_series
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MM = 1e3  # mm per m
 

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
-from matplotlib.colors import LinearSegmentedColormap
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from pliant.errors import ShapeError
 from pliant.spatial import Array
 from pliant.telemetry.plots import style
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 _MM = 1e3  # mm per m
-_ERRORS = LinearSegmentedColormap.from_list("error", ("#0b6fb8", "#3fb0e0", "#e0a100", "#c22f2f"))
+_ERRORS = ("#0b6fb8", "#3fb0e0", "#e0a100", "#c22f2f")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +74,7 @@ def task_path(
     ax.set_aspect("equal", adjustable="datalim")
     if wall is not None:
         _draw_wall(ax, wall)
-    ax.xaxis.set_major_locator(MaxNLocator(6))
-    ax.yaxis.set_major_locator(MaxNLocator(6))
+    ax.locator_params(nbins=6)
     style.legend(ax, outside=not by_error)
     return made
 
@@ -93,10 +92,14 @@ def _size(points: Sequence[Array]) -> tuple[float, float]:
 
 
 def _draw_by_error(made: Figure, ax: Axes, path: Path2D, reference: Array, axes: tuple[int, int]) -> None:
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import LinearSegmentedColormap
+
+    colours = LinearSegmentedColormap.from_list("error", _ERRORS)
     error = np.linalg.norm(path.position - reference, axis=1) * _MM
     points = path.position[:, axes]
     segments = np.stack((points[:-1], points[1:]), axis=1)
-    lines = LineCollection(list(segments), cmap=_ERRORS, linewidths=1.8, capstyle="round")
+    lines = LineCollection(list(segments), cmap=colours, linewidths=1.8, capstyle="round")
     lines.set_array(error[1:])
     lines.set_clim(0.0, float(np.nanmax(error)) or 1.0)
     ax.add_collection(lines)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pliant.spatial import Array
 from pliant.telemetry.plots import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def dots(rows: Mapping[str, Array], xlabel: str, title: str = "", targets: Mapping[str, float] | None = None) -> Figure:

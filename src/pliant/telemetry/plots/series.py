@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from pliant.spatial import Array
 from pliant.telemetry.plots import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MOST_POINTS = 4000  # more than the pixels of a panel's width; beyond, minimum and maximum of each stretch are drawn
 _CROWDED = 0.08  # share of the width within which two names would touch
