@@ -18,8 +18,8 @@ from pliant.references.toolpaths.toolpath import PathMotion, on_chart
 from pliant.references.trajectories.spline import Spline
 from pliant.robot import Robot, Tool
 from pliant.spatial import exp3, log3, rpy
+from pliant.studies.task.reach_figure import reach_figure
 from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
-from pliant.wiring.reach_figure import reach_figure
 
 RADIUS = 0.015
 ROBOT = Robot.load("iiwa14").with_tool(Tool(mass=0.3, length=0.15, radius=RADIUS, frame="tool"))

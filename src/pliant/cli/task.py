@@ -99,8 +99,8 @@ def check_command(
     from pliant.errors import RunFailedError
     from pliant.studies.task.check import checked_reach
     from pliant.studies.task.config import TaskCase
+    from pliant.studies.task.reach_figure import reach_figure
     from pliant.telemetry.plots import save
-    from pliant.wiring.reach_figure import reach_figure
 
     config = resolve(target, case, overrides, assignments).config
     if not isinstance(config, TaskCase):

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from pliant import __version__
 from pliant.cli.progress import count_bar
+from pliant.cli.run import study_folder
 from pliant.experiments.config import assigned, merged
 from pliant.experiments.lock import locked
 from pliant.experiments.parquet import write_parquet
@@ -50,7 +51,7 @@ def tune_command(
     changes = assigned(assignments)
     tuning = replace(tuning, runs=[merged(config, changes) for config in tuning.runs])
     check_buildable(name, merged(tuning.runs[0], tuning.changes(tuning.start)))
-    folder = output_folder(out or Path("pliant-out") / f"{name}-tune-{controller}")
+    folder = output_folder(out or study_folder(f"{Path(name).stem}-tune-{re.sub(r'[^A-Za-z0-9_-]+', '-', controller)}"))
     made: list[Trial] = []
     about = {"study": name, "controller": controller, "case": case, "seed": seed, "assignments": list(assignments)}
     with locked(folder):
@@ -124,6 +125,7 @@ def _toml(tuning: Tuning, made: Sequence[Trial], best: Trial, about: Mapping[str
         f"# pliant {__version__}: best of {len(made)} trials, seed {about['seed']};"
         f" objective {_objective(best)}, at the start {_objective(made[0])}",
         f"study = {json.dumps(about['study'])}",
+        *([] if about["case"] is None else [f"case = {json.dumps(about['case'])}"]),
         f"controller = {json.dumps(about['controller'])}",
         *_assignments(tuning.changes(best.values)),
     ]

@@ -83,7 +83,7 @@ def find_tuning(study: Study[Any], controller: str, case: str | None = None) -> 
     Raises:
         ConfigError: the study has no such controller or case, or does not say how it is tuned.
     """
-    if controller not in study.controllers:
+    if ":" not in controller and controller not in study.controllers:  # a class of the user's own is found by `tuning`
         raise ConfigError(
             f"study {study.name!r} has no controller {controller!r}; {options(study.controllers, controller)}"
         )

@@ -50,6 +50,8 @@ def _preview(later: Sequence[Reference]) -> Preview | None:
     if len(rotations) < len(tasks):
         return None
     postures = [reference.posture for reference in later if reference.posture is not None]
+    axes = [np.eye(3) if task.task_rotation is None else task.task_rotation for task in tasks]
+    turning = any(task.task_rotation is not None for task in tasks)
     return Preview(
         time=np.array([reference.time for reference in later]),
         position=np.array([task.position for task in tasks]),
@@ -58,4 +60,5 @@ def _preview(later: Sequence[Reference]) -> Preview | None:
         wrench=np.array([task.wrench for task in tasks]),
         phase=tuple(reference.phase for reference in later),
         posture=np.array(postures) if len(postures) == len(later) else None,
+        task_rotation=np.array(axes) if turning else None,
     )

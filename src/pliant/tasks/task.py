@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import Field
 
-from pliant.configuration import Config
+from pliant.configuration import Config, Range
 from pliant.tasks.parts import Disturbance, Force, Limits, Path, Phases, Simulation, Surface, Timing, Tool, Truth
 
 FORMAT = 1
@@ -36,6 +36,9 @@ class TaskParts(Config):
     )
     sweep: dict[str, Any] = Field(
         default={}, description="key → list of values, read by `pliant study`; `seeds`: how many of each"
+    )
+    tune: dict[str, Range] = Field(
+        default={}, description="parameter of the controller → lowest and highest, read by `--tune`; none: its gains"
     )
     simulation: Simulation = Simulation()
     control: dict[str, dict[str, Any]] = Field(

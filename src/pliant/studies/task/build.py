@@ -11,7 +11,7 @@ from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
 from pliant.simulation.seeding import generator
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.geometry import believed_surface, force_of, robot_of, toolpath_of
+from pliant.studies.task.geometry import force_of, laid_out
 from pliant.studies.task.world import plant_of, true_surface
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.parts import Truth
@@ -36,16 +36,15 @@ def planned(case: TaskCase) -> Planned:
     Raises:
         PliantError: a robot or path that there is not, or that the robot cannot follow.
     """
-    believed = case.model_copy(update={"truth": Truth(), "seed": 0, "control": {}, "variant": "", "accept": {}})
+    of_the_run = {"truth": Truth(), "seed": 0, "controller": "", "control": {}, "variant": ""}
+    believed = case.model_copy(update={**of_the_run, "accept": {}, "sweep": {}, "tune": {}, "description": ""})
     return _planned(believed.model_dump_json())
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=32)
 def _planned(text: str) -> Planned:
     case = TaskCase.model_validate_json(text)
-    robot = robot_of(case, case.robot)
-    surface = believed_surface(case, robot)
-    path = toolpath_of(case, surface, robot)
+    robot, surface, path = laid_out(case, case.robot)
     phases = case.phases
     settings = SurfaceTaskSettings(
         phases.stand_off, phases.approach_speed, phases.search, phases.press, phases.leave, case.path.spins

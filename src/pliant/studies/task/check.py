@@ -6,7 +6,7 @@ from pliant.references.postures.posture import PostureOptions
 from pliant.references.reach.check import ReachCheck, check_reach
 from pliant.references.reach.course import course_of
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.geometry import believed_surface, force_of, robot_of, toolpath_of
+from pliant.studies.task.geometry import force_of, laid_out
 from pliant.studies.task.world import true_surface
 
 _DRAWN = 10
@@ -18,9 +18,7 @@ def checked_reach(case: TaskCase, drawn: int = _DRAWN) -> ReachCheck:
     Raises:
         PliantError: a robot, frame or path that there is not.
     """
-    robot = robot_of(case, case.robot)
-    surface = believed_surface(case, robot)
-    path = toolpath_of(case, surface, robot)
+    robot, surface, path = laid_out(case, case.robot)
     phases = case.phases
     course = course_of(path, force_of(case), phases.stand_off, phases.approach_speed, phases.leave)
     seeds = (case.model_copy(update={"seed": case.seed + index}) for index in range(drawn))

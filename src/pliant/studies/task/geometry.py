@@ -41,6 +41,13 @@ def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
     return Robot.load(source, locked=locked, tool=made).with_contact(tool.frame, tool.radius)
 
 
+def laid_out(task: TaskParts, source: str) -> tuple[Robot, SurfaceGeometry, Toolpath]:
+    """Robot, believed surface and the path on it. Raises PliantError: one that there is not."""
+    robot = robot_of(task, source)
+    surface = believed_surface(task, robot)
+    return robot, surface, toolpath_of(task, surface, robot)
+
+
 def believed_surface(task: TaskParts, robot: Robot) -> SurfaceGeometry:
     """Where the controller believes the surface."""
     return task.surface.geometry(task.surface.pose or default_pose(task, robot))

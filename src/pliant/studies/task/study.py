@@ -10,11 +10,12 @@ from typing import Any
 from pliant.configuration import merged, overlaid, validated
 from pliant.errors import ConfigError
 from pliant.experiments.base import Experiment, Study
-from pliant.experiments.tuning import nested
+from pliant.experiments.tuning import Tuning, nested
 from pliant.studies.task import draw
 from pliant.studies.task.build import build, planned
 from pliant.studies.task.config import TaskCase, case_of
 from pliant.studies.task.measure import WORST, Signals, check_accept, measured, signals_of
+from pliant.studies.task.tuning import tuning_of
 from pliant.studies.task.world import true_surface
 from pliant.tasks.files import TaskFile, checked, read_task
 from pliant.tasks.task import Task
@@ -76,6 +77,9 @@ class TaskStudy(Study[TaskCase]):
         if allowed is not None and peak > allowed:
             return f"the force limit was passed: {peak:.3g} N along the normal, limits.force allows {allowed:g} N"
         return None
+
+    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+        return tuning_of(self.case(case or next(iter(self.cases))), controller)
 
     def figures(self, config: TaskCase, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, self._signals(config, log), folder)

@@ -1,0 +1,99 @@
+"""A raster on five surfaces with several robots, over seeds: what the tasks that ship ask for, and what comes out.
+
+    python benchmarks/tasks.py                                  iiwa14, panda, ur5e; 3 seeds; about half an hour
+    python benchmarks/tasks.py --size 0.12,0.02                 two lines and the turn between them
+    python benchmarks/tasks.py --perfect                        perfect arms, surfaces where they are believed
+    python benchmarks/tasks.py --controller haptic --seeds 1
+
+One line a run, then a table in Markdown: the mean over the seeds that did not fail of the mean force error, the worst
+of the other metrics, and how many runs failed (the arm stopped, no contact found, or a force above `limits.force`).
+Ctrl-C prints the table of the runs until then.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+
+from pliant.configuration import merged
+from pliant.errors import PliantError
+from pliant.experiments.base import Result
+from pliant.experiments.runner import run_case
+from pliant.studies.task.study import study_of
+
+TASKS = ("wipe", "wipe-tilted-20", "wipe-tilted-45", "wipe-cylinder", "wipe-sphere")
+ROBOTS = ("iiwa14", "panda", "ur5e")
+WORST = ("force_error_max", "force_peak", "contact_lost", "path_error")
+PERFECT = {
+    "timing": {"sensing_delay": 0.0, "computation_delay": 0.0},
+    "truth": {"shift": 0.0, "tilt": 0.0, "imperfections": "none"},
+}
+
+
+def run(task: str, robot: str, seed: int, asked: argparse.Namespace) -> Result | str:
+    """One run, or why it could not begin."""
+    study = study_of(task)
+    case = merged(study.case(task), {"robot": robot, "controller": asked.controller, "seed": seed})
+    if asked.size:
+        case = merged(case, {"path": {"size": tuple(float(length) for length in asked.size.split(","))}})
+    try:
+        return run_case(study, merged(case, PERFECT) if asked.perfect else case)
+    except PliantError as error:
+        return str(error)
+
+
+def values(result: Result | str) -> dict[str, float]:
+    return {} if isinstance(result, str) else {metric.name: metric.value for metric in result.metrics}
+
+
+def failure(result: Result | str) -> str | None:
+    return result if isinstance(result, str) else result.failure
+
+
+def row(task: str, robot: str, results: Sequence[Result | str]) -> str:
+    good = [values(result) for result in results if failure(result) is None]
+    cells = ["–"] * (2 + len(WORST))
+    if good:
+        errors = [found["force_error"] for found in good]
+        cells = [f"{sum(errors) / len(errors):.2f}", f"{max(errors):.2f}"]
+        cells += [f"{max(found[name] for found in good):.3g}" for name in WORST]
+    return f"| `{task}` | {robot} | {len(results) - len(good)} of {len(results)} | {' | '.join(cells)} |"
+
+
+def table(found: Mapping[tuple[str, str], Sequence[Result | str]]) -> str:
+    head = (
+        "| task | robot | failed | force_error, N | worst seed | force_error_max, N | force_peak, N | contact_lost, % |"
+    )
+    rows = [row(*pair, results) for pair, results in found.items() if results]
+    return "\n".join(
+        (f"{head} contact_lost, % | path_error, mm |", "|---|---|---:|---:|---:|---:|---:|---:|---:|", *rows)
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tasks", default=",".join(TASKS))
+    parser.add_argument("--robots", default=",".join(ROBOTS))
+    parser.add_argument("--controller", default="offset-free-mpc")
+    parser.add_argument("--seeds", type=int, default=None, help="default: 3, or 1 with --perfect")
+    parser.add_argument("--size", default="", help="of the raster, m,m; default: the task's")
+    parser.add_argument("--perfect", action="store_true")
+    asked = parser.parse_args()
+    pairs = [(task, robot) for task in asked.tasks.split(",") for robot in asked.robots.split(",")]
+    found: dict[tuple[str, str], list[Result | str]] = {pair: [] for pair in pairs}
+    try:
+        for seed in range(asked.seeds or (1 if asked.perfect else 3)):
+            for task, robot in pairs:
+                result = run(task, robot, seed, asked)
+                found[task, robot].append(result)
+                said = ", ".join(f"{name} {value:.3g}" for name, value in values(result).items())
+                print(
+                    f"{task} {robot} seed {seed}: {said or 'nothing measured'}; {failure(result) or 'done'}", flush=True
+                )
+    except KeyboardInterrupt:
+        print("interrupted")
+    print("\n" + table(found))
+
+
+if __name__ == "__main__":
+    main()

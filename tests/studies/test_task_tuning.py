@@ -1,0 +1,90 @@
+"""Any controller is tuned on a task file, by its gains or by the parameters that the file names."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from pliant.cli.app import app
+from pliant.errors import ConfigError
+from pliant.experiments.base import Result
+from pliant.experiments.tuning import find_tuning
+from pliant.studies.task.study import study_of
+from pliant.studies.task.tuning import FIRST_SEED, objective
+from pliant.telemetry.summary import Metric
+from pliant.wiring.registry import controllers
+
+CLI = CliRunner()
+TASK = """\
+[surface]
+pose = { xyz = [0.55, 0.0, 0.1] }
+[path]
+pattern = "hold"
+time = 0.1
+[phases]
+stand_off = 0.005
+press = 0.1
+leave = 0.1
+[truth]
+shift = { uniform = [-0.002, 0.002] }
+[variant.soft]
+surface = { stiffness = 5e3 }
+"""
+
+
+def written(folder: Path, more: str = "") -> str:
+    path = folder / "press-once.toml"
+    path.write_text(TASK + more, encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("controller", controllers())
+def test_every_controller_has_gains_to_search_on_other_seeds_than_a_tables(controller: str) -> None:
+    study = study_of("wipe")
+    tuning = find_tuning(study, controller)
+    assert tuning.parameters
+    assert all(run.controller == controller and run.seed >= FIRST_SEED for run in tuning.runs)
+    for key, about in tuning.parameters.items():
+        assert about.low < tuning.start[key] < about.high
+        assert "phases.reach" not in key  # of another task
+
+
+def test_a_file_names_what_is_searched(tmp_path: Path) -> None:
+    study = study_of(written(tmp_path, '[tune]\n"exploration.gain" = [5.0, 500.0]\n'))
+    tuning = find_tuning(study, "haptic")
+    (key,) = tuning.parameters
+    assert (key, tuning.parameters[key].log) == ("exploration.gain", True)
+    assert tuning.changes({key: 7.0}) == {"control": {"haptic": {"exploration": {"gain": 7.0}}}}
+    with pytest.raises(ConfigError, match=r"tune: controller 'offset-free-mpc' has no number 'exploration\.gain'"):
+        find_tuning(study, "offset-free-mpc")
+    with pytest.raises(ConfigError, match="nobody"):
+        find_tuning(study, "nobody")
+
+
+def test_what_is_worse_costs_more() -> None:
+    case = study_of("wipe").case("wipe")
+    good = {"force_error": 0.5, "path_error": 0.2, "force_error_max": 2.0, "contact_lost": 0.0}
+
+    def cost(**worse: float) -> float:
+        return objective([Result(case, tuple(Metric(name, value, "1") for name, value in (good | worse).items()))])
+
+    assert cost() == pytest.approx(0.5 + 0.2 + 0.1)
+    for name, value in good.items():
+        assert cost(**{name: value + 1.0}) > cost()
+
+
+def test_a_search_on_a_file_writes_what_run_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = Path(written(tmp_path, "[tune]\nstiffness = [100.0, 900.0]\n")).name
+    controller = "operational-space"
+    done = CLI.invoke(app, ["study", name, "--tune", controller, "--trials", "1", "--case", "soft"])
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "pliant-out" / "press-once-tune-operational-space"
+    tuned = tomllib.loads((folder / "tuned.toml").read_text())
+    assert (tuned["study"], tuned["case"], tuned["controller"]) == (name, "soft", controller)
+    assert 100.0 <= tuned["control"][controller]["stiffness"] <= 900.0
+    shown = CLI.invoke(app, ["run", str(folder / "tuned.toml"), "--show-config"])
+    assert shown.exit_code == 0, shown.output
