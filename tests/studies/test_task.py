@@ -86,6 +86,8 @@ def test_a_user_begins_a_task_runs_it_and_compares_controllers(tmp_path: Path, m
     cases = json.loads((tmp_path / "o" / "summary.json").read_text())["cases"]
     assert [case["controller"] for case in cases] == ["offset-free-mpc", "haptic"]
     assert all(case["failed"] == 0 for case in cases)
+    for figure in ("compare_force_error.png", "compare_path_error.png"):
+        assert (tmp_path / "o" / figure).stat().st_size > 10_000
 
 
 def test_a_task_is_checked_before_it_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from pliant.experiments.base import Experiment
+from pliant.experiments.base import Experiment, Result
 from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
@@ -18,6 +19,7 @@ from pliant.studies.task.measure import Signals
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
 from pliant.telemetry.plots.pictures import picture_row
+from pliant.telemetry.plots.rows import dots
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,6 +36,26 @@ def run_figures(case: TaskCase, experiment: Experiment, log: Log, signals: Signa
     files = [save(_history(case, log, signals), folder / f"{stem}_history.png")]
     scene = _moments(case, experiment, log, signals)
     return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+
+
+def comparison(results: Sequence[Result], folder: Path) -> list[Path]:
+    """What several runs say together: a dot for each, a row for each case, robot, controller and variant."""
+    if len(results) < 2:
+        return []
+    files: list[Path] = []
+    for name, label in (("force_error", "mean force error, N"), ("path_error", "mean distance from the path, mm")):
+        rows: dict[str, list[float]] = {}
+        bounds: dict[str, float] = {}
+        for result in results:
+            config = result.config
+            row = " · ".join(part for part in (config.case, config.robot, config.controller, config.variant) if part)
+            found = next((one for one in result.metrics if one.name == name), None)
+            rows.setdefault(row, []).append(np.nan if found is None or result.failure else found.value)
+            if found is not None and found.target is not None:
+                bounds[row] = found.target
+        drawn = {row: np.array(values) for row, values in rows.items()}
+        files.append(save(dots(drawn, label, targets=bounds), folder / f"compare_{name}.png"))
+    return files
 
 
 def _history(case: TaskCase, log: Log, signals: Signals) -> Figure:

@@ -9,7 +9,7 @@ from typing import Any
 
 from pliant.configuration import merged, overlaid, validated
 from pliant.errors import ConfigError
-from pliant.experiments.base import Experiment, Study
+from pliant.experiments.base import Experiment, Result, Study
 from pliant.experiments.tuning import Tuning, nested
 from pliant.studies.task import draw
 from pliant.studies.task.build import build, planned
@@ -83,6 +83,9 @@ class TaskStudy(Study[TaskCase]):
 
     def figures(self, config: TaskCase, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, self._signals(config, log), folder)
+
+    def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
+        return draw.comparison(results, folder)
 
     def _signals(self, config: TaskCase, log: Log) -> Signals:
         made = planned(config)
