@@ -18,11 +18,13 @@ struct AccountConfig {
   double ceiling;      // J, largest balance
   double savings;      // J, most of what is beyond it that is put aside
   double spend;        // share of the balance beyond the reserve that one step may spend
-  double damping;      // largest force that repays a debt, as a multiple of K_0 times the step
+  double damping;      // largest force that repays a debt, as a multiple of the slope times the step
   double tolerance;    // J, debt that does not weaken the axis
   double speed[2];     // m/s, rad/s: the tolerance is at least K_0/2 (speed period)^2
+  double kick[2];      // m/s, rad/s: a step may come out otherwise than expected by so much times the period
   double trickle;      // W that an overdrawn axis may always let out
-  double peak_keep;    // share of the largest recent step that is kept per period
+  double trust;        // share per period with which it is learned how right the expected steps are
+  double peak_keep;    // share of the largest recent step, slope and surprise that is kept per period
   double forgiveness;  // share of the debt beyond the tolerance that is written off per period
 };
 
@@ -35,6 +37,11 @@ struct AccountState {
   double step_last;  // in the one before
   double target;     // by which the target moved the error in the last period
   double peak;       // largest recent step
+  double expected;   // step that was expected for the period that follows
+  double surprise;   // largest recent difference of a step to what was expected
+  double right;      // recent mean of the expected step times the real one
+  double size;       // of its absolute value
+  double slope;      // largest recent slope of the profile over a step, at least K_0, N/m or N m/rad
 };
 
 // What moved the error in the last period.
@@ -80,17 +87,26 @@ inline void book(const AccountConfig& c, Shape shape, const Axis& p, AccountStat
   a.step = m.robot - m.from + smaller_of_a_kind(target, a.target);
   a.target = target;
   a.stored = stored;
+  a.surprise = std::max(std::fabs(a.expected - a.step), a.surprise * c.peak_keep);
+  a.right += c.trust * (a.expected * a.step - a.right);
+  a.size += c.trust * (std::fabs(a.expected * a.step) - a.size);
 }
 
-// What the profile stores more after a change of the tuning is taken from the balance.
+// What the profile stores more after a change of the tuning is taken from savings and balance as far as they go: the
+// rest was supplied by who made the change, and leaves no debt.
 inline void restate(const AccountConfig& c, AccountState& a, double stored) {
-  add_outside(c, a, a.stored - stored);
+  const double income = a.stored - stored;
+  add_outside(c, a, std::max(income, -a.savings - std::max(a.balance, 0.0)));
   a.stored = stored;
+  a.slope = 0.0;
 }
+
+constexpr double kSmallStep = 1e-6;  // m or rad: below it the difference of energies is rounding
 
 // What is left to spend on a step d: the balance less what a reversal would cost.
 struct Budget {
   double step;     // that is expected
+  double slope;    // of the profile over it there and back, N/m or N m/rad
   double gain;     // J that the profile stores more after it
   double balance;  // J, beyond the reserve; negative: below it
 };
@@ -98,31 +114,46 @@ struct Budget {
 inline Budget budget(Shape shape, const Axis& p, const AccountState& a, double error) {
   const double size = std::max(std::fabs(a.step), std::fabs(a.step_last));
   const double d = std::min(std::max(2.0 * a.step - a.step_last, -size), size);
-  if (d == 0.0) return {0.0, 0.0, a.balance};
+  if (d == 0.0) return {0.0, 0.0, 0.0, a.balance};
   const double gain = energy(shape, p, error + d) - a.stored;
   const double reversal = gain + energy(shape, p, error - d) - a.stored;
-  return {d, gain, a.balance - std::max(reversal, 0.0)};
+  const double slope = std::fabs(d) > kSmallStep ? reversal / (d * d) : 0.0;
+  return {d, slope, gain, a.balance - std::max(reversal, 0.0)};
 }
 
 inline double clamped(double x, double bound) { return std::min(std::max(x, -bound), bound); }
 
+// J that may still leave the axis, what is stored included.
+inline double left(const AccountState& a, double tolerance) { return a.stored + a.balance + tolerance; }
+
+// However the next step comes out, within what surprised of late, what leaves is left. After a debt the largest recent
+// step counts, whichever way it went.
+inline double bounded_by_rest(const AccountConfig& c, const AccountState& a, double tolerance, double step, double h,
+                              bool rotates) {
+  const double least = c.trickle * c.period;
+  const double against = std::max(c.kick[rotates] * c.period, a.surprise) - (h > 0.0 ? step : -step);
+  if (against > 0.0) h = clamped(h, std::max(left(a, tolerance), least) / against);
+  if (a.balance < 0.0 && a.peak > 0.0) h = clamped(h, std::max(0.5 * left(a, tolerance), least) / a.peak);
+  return h;
+}
+
 // The force nearest to the wanted one that the account allows.
 inline double allowed_force(const AccountConfig& c, const Axis& p, AccountState& a, const Budget& b, double h,
                             bool rotates) {
+  a.expected = b.step;
+  a.slope = std::max(std::max(b.slope, p.stiffness), a.slope * c.peak_keep);
+  const double right = a.size > 0.0 ? std::max(a.right / a.size, 0.0) : 1.0;
   if (b.step != 0.0) {
-    const double repay = std::min(std::max(-b.balance, 0.0), c.damping * p.stiffness * b.step * b.step);
+    const double repay = std::min(std::max(-b.balance, 0.0), right * c.damping * a.slope * b.step * b.step);
     const double need = b.gain - c.spend * std::max(b.balance, 0.0) + repay;
     if (h * b.step < need) h = need / b.step;
     h = clamped(h, p.force_max);
   }
   const double way = c.speed[rotates] * c.period;
   const double tolerance = std::max(c.tolerance, 0.5 * p.stiffness * way * way);
-  a.balance += c.forgiveness * std::max(-a.stored - tolerance - a.balance, 0.0);
+  a.balance += c.forgiveness * std::max(-left(a, tolerance), 0.0);
   a.peak = std::max(std::fabs(a.step), a.peak * c.peak_keep);
-  if (a.balance < 0.0 && a.peak > 0.0) {
-    h = clamped(h, std::max(0.5 * (a.stored + a.balance + tolerance), c.trickle * c.period) / a.peak);
-  }
-  return h;
+  return bounded_by_rest(c, a, tolerance, b.step, h, rotates);
 }
 
 }  // namespace pliant::impedance

@@ -29,7 +29,7 @@ class Stack:
             noise_gain: share of a new sample in the noise variance.
             hold_limit: s.
             blend_step: share of the force's step at the end of a convergence that one period takes away.
-            account: (11,) `AccountSettings.numbers`, or None: no passivity account, and no bound on moments.
+            account: (14,) `AccountSettings.numbers`, or None: no passivity account, and no bound on moments.
             torque_limit: (n,) N·m, may be infinite.
             tasks: (axes, profile, rate floor in m/s, rate floor in rad/s, which joints move the frame) each.
         """

@@ -1,4 +1,4 @@
-"""The stack study in a reduced form: shorter runs, fewer seeds, the same targets, with control arms that must fail."""
+"""The stack study in a reduced form: shorter runs, fewer seeds, the same targets, with baselines that must fail."""
 
 from __future__ import annotations
 
@@ -91,6 +91,13 @@ def test_any_gains_may_change_while_it_moves() -> None:
     assert found["|h| over F_max"].value <= 1.0 + 1e-12
     assert found["RMSE x"].value < 50.0  # it keeps tracking, worse with the softer gains
     assert found["torque step"].value <= 15.0
+
+
+def test_changed_gains_leave_no_debt_that_weakens_an_axis() -> None:
+    """What the account could not pay of a change stayed owed: the axis went limp, and the moving target filled it."""
+    found = metrics_of("calibration", seed=0)
+    assert found["storage margin of translation"].value >= -0.05  # J
+    assert found["RMSE y"].value < 6.0  # mm
 
 
 def test_a_straight_elbow_is_no_singularity() -> None:

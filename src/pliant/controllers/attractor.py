@@ -175,7 +175,8 @@ class Attractor:
     def _account(self, error: Array) -> Account:
         rotates = np.zeros(error.shape, dtype=np.bool_) if self.rotates is None else self.rotates
         speed = np.where(rotates, self.account.speed_angular, self.account.speed)
-        return Account(self.period, speed, self.account)
+        kick = np.where(rotates, self.account.kick_angular, self.account.kick)
+        return Account(self.period, speed, kick, self.account)
 
     def _booked(self, profile: ForceProfile, error: Array, state: AttractorState, motion: Motion) -> AccountState:
         account, last = self._account(error), state.errors[0]

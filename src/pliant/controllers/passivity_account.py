@@ -32,28 +32,43 @@ class AccountSettings:
     tuning and torque that was not sent, never for the axis' own force"""
     spend: float = 0.25
     """share of the balance, beyond the cost of a reversal, that one period may spend"""
-    damping: float = 1.5
-    """largest force that repays a debt, as a multiple of K_0 times the step of a period"""
+    damping: float = 3.0
+    """largest force that repays a debt, as a multiple of the step of a period times the largest recent slope of the
+    profile over a step: a knee costs by its own slope, not by K_0"""
     tolerance: float = 0.005
-    """J of debt that does not weaken an axis; at least ½ K_0 (T_s · speed)², what one sample may leak"""
-    speed: float = 1.0
+    """J of debt that does not weaken an axis; at least ½ K_0 (T_s · speed)², what one sample at that speed leaks"""
+    speed: float = 0.7
     """m/s"""
-    speed_angular: float = 2.0
+    speed_angular: float = 1.4
     """rad/s"""
-    trickle: float = 0.02
+    kick: float = 0.3
+    """m/s by which one period may change the speed without notice: 300 m/s² at 1 kHz. A force that a motion back by so
+    much would draw on is held to what is left"""
+    kick_angular: float = 0.6
+    """rad/s"""
+    trickle: float = 0.004
     """W that an overdrawn axis may always let out, so that it never goes quite limp"""
+    trust: float = 0.125
+    """share per period with which it is learned how right the expected steps are: debts are repaid by as much, for
+    motions that turn within a few periods would take from a force that repays"""
     peak_time: float = 0.1
-    """s for which the largest recent step counts as what may come next"""
+    """s for which the largest recent step, slope and surprise count as what may come next"""
     forgiveness_time: float = 0.5
     """s over which debt beyond the tolerance is written off"""
 
     def numbers(self, period: float) -> Array:
-        """(11,) as the compiled core takes them, for a period in s."""
-        rates = (math.exp(-period / self.peak_time), -math.expm1(-period / self.forgiveness_time))
+        """(14,) as the compiled core takes them, for a period in s."""
         levels = (self.deposit, self.ceiling, self.savings, self.spend, self.damping, self.tolerance)
-        return np.array([*levels, self.speed, self.speed_angular, self.trickle, *rates])
+        speeds = (self.speed, self.speed_angular, self.kick, self.kick_angular)
+        return np.array([*levels, *speeds, self.trickle, self.trust, *self.rates(period)])
+
+    def rates(self, period: float) -> tuple[float, float]:
+        """Shares per period of s: kept of the largest recent values, written off of a debt."""
+        return math.exp(-period / self.peak_time), -math.expm1(-period / self.forgiveness_time)
 
 
+SMALL_STEP = 1e-6
+"""m or rad: below it the difference of energies is rounding"""
 ACCOUNT = AccountSettings()
 """the default"""
 
@@ -78,6 +93,16 @@ class AccountState:
     """by which the target moved the error in the last period, m or rad"""
     peak: Array
     """largest recent step, m or rad"""
+    expected: Array
+    """step that was expected for the period that follows, m or rad"""
+    surprise: Array
+    """largest recent difference of a step to what was expected, m or rad"""
+    right: Array
+    """recent mean of the expected step times the real one"""
+    size: Array
+    """recent mean of its absolute value"""
+    slope: Array
+    """largest recent slope of the profile over a step, N/m or N·m/rad"""
 
 
 @dataclass(frozen=True)
@@ -98,12 +123,14 @@ class Account:
     """s"""
     speed: Array
     """(k,) m/s or rad/s, for the tolerance"""
+    kick: Array
+    """(k,) m/s or rad/s, what one period may change the speed by"""
     settings: AccountSettings = ACCOUNT
 
     def init(self, profile: ForceProfile, error: Array) -> AccountState:
         """An empty account at an error (k,), m or rad."""
         zero = np.zeros_like(error)
-        return AccountState(profile, zero, zero, profile.energy(error), zero, zero, zero, zero)
+        return AccountState(profile, zero, zero, profile.energy(error), *(zero,) * 9)
 
     def book(self, state: AccountState, last: Array, force: Array, error: Array, motion: Motion) -> AccountState:
         """Books a period in which the error went from `last` to `error` (k,) and h = `force` (k,) was asked for.
@@ -118,35 +145,66 @@ class Account:
         state = self._add(state, own - (between - state.stored) + supplied)
         smooth = np.where(np.abs(target) < np.abs(state.target), target, state.target)
         step = motion.robot - last + np.where(target * state.target > 0.0, smooth, 0.0)
-        return replace(state, stored=stored, step=step, step_last=state.step, target=target)
+        moved = replace(state, stored=stored, step=step, step_last=state.step, target=target)
+        hit, trust = state.expected * step, self.settings.trust
+        right, size = state.right + trust * (hit - state.right), state.size + trust * (np.abs(hit) - state.size)
+        surprise = np.maximum(np.abs(state.expected - step), state.surprise * self.settings.rates(self.period)[0])
+        return replace(moved, right=right, size=size, surprise=surprise)
 
     def restate(self, state: AccountState, profile: ForceProfile, error: Array) -> AccountState:
-        """A change of the tuning: what is stored more is taken from the balance. Args: error (k,) m or rad."""
+        """A change of the tuning: what is stored more is paid as far as savings and balance go.
+
+        The rest was supplied by who made the change, and leaves no debt. Args: error (k,) m or rad.
+        """
         stored = profile.energy(error)
-        return replace(self._outside(state, state.stored - stored), profile=profile, stored=stored)
+        income = np.maximum(state.stored - stored, -state.savings - np.maximum(state.balance, 0.0))
+        paid = self._outside(state, income)
+        return replace(paid, profile=profile, stored=stored, slope=np.zeros_like(stored))
 
     def allow(self, state: AccountState, error: Array, wanted: Array) -> tuple[Array, AccountState]:
-        """The force (k,) nearest to the wanted one that the account allows, and the next state."""
-        profile, settings = state.profile, self.settings
+        """The force (k,) nearest to the wanted one that the account allows, and the next state.
+
+        Args:
+            state: after the last period was booked.
+            error: (k,) m or rad.
+            wanted: (k,) force of the law, N or N·m.
+        """
+        profile, settings, period = state.profile, self.settings, self.period
+        keep, forgiven = settings.rates(period)
         size = np.maximum(np.abs(state.step), np.abs(state.step_last))
         d = np.clip(2.0 * state.step - state.step_last, -size, size)
         gain = profile.energy(error + d) - state.stored
         reversal = gain + profile.energy(error - d) - state.stored
         balance = state.balance - np.maximum(reversal, 0.0)
-        repay = np.minimum(np.maximum(-balance, 0.0), settings.damping * profile.stiffness * d**2)
+        over = np.where(np.abs(d) > SMALL_STEP, reversal, 0.0) / np.where(np.abs(d) > SMALL_STEP, d**2, 1.0)
+        slope = np.maximum(np.maximum(over, profile.stiffness), state.slope * keep)
+        known = state.size > 0.0
+        right = np.where(known, np.maximum(state.right, 0.0) / np.where(known, state.size, 1.0), 1.0)
+        repay = np.minimum(np.maximum(-balance, 0.0), right * settings.damping * slope * d**2)
         need = gain - settings.spend * np.maximum(balance, 0.0) + repay
         least = need / np.where(d == 0.0, 1.0, d)
         force = np.where((d != 0.0) & (wanted * d < need), least, wanted)
         force = np.where(d != 0.0, np.clip(force, -profile.force_max, profile.force_max), wanted)
-        tolerance = np.maximum(settings.tolerance, 0.5 * profile.stiffness * (self.speed * self.period) ** 2)
-        forgiven = -math.expm1(-self.period / settings.forgiveness_time)
-        overdraft = np.maximum(-state.stored - tolerance - state.balance, 0.0)
-        state = replace(state, balance=state.balance + forgiven * overdraft)
-        peak = np.maximum(np.abs(state.step), state.peak * math.exp(-self.period / settings.peak_time))
-        left = np.maximum(0.5 * (state.stored + state.balance + tolerance), settings.trickle * self.period)
-        bound = left / np.where(peak > 0.0, peak, 1.0)
-        bound = np.where((state.balance < 0.0) & (peak > 0.0), bound, np.inf)
-        return np.clip(force, -bound, bound), replace(state, peak=peak)
+        tolerance = np.maximum(settings.tolerance, 0.5 * profile.stiffness * (self.speed * period) ** 2)
+        overdraft = np.maximum(-(state.stored + state.balance + tolerance), 0.0)
+        peak = np.maximum(np.abs(state.step), state.peak * keep)
+        state = replace(state, balance=state.balance + forgiven * overdraft, peak=peak, slope=slope, expected=d)
+        return self._bounded_by_rest(state, tolerance, force), state
+
+    def _bounded_by_rest(self, state: AccountState, tolerance: Array, force: Array) -> Array:
+        """However the next step comes out, within what surprised of late, what leaves (k,) is left.
+
+        After a debt the largest recent step counts, whichever way it went.
+        """
+        left, least = state.stored + state.balance + tolerance, self.settings.trickle * self.period
+        forward = np.where(force > 0.0, state.expected, -state.expected)
+        against = np.maximum(self.kick * self.period, state.surprise) - forward
+        bound = np.maximum(left, least) / np.where(against > 0.0, against, 1.0)
+        bound = np.where(against > 0.0, bound, np.inf)
+        force = np.clip(force, -bound, bound)
+        bound = np.maximum(0.5 * left, least) / np.where(state.peak > 0.0, state.peak, 1.0)
+        bound = np.where((state.balance < 0.0) & (state.peak > 0.0), bound, np.inf)
+        return np.clip(force, -bound, bound)
 
     def _add(self, state: AccountState, income: Array) -> AccountState:
         """An income pays the debt first; of the rest a share is kept, and what is beyond the ceiling put aside."""
