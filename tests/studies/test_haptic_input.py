@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.controllers.profiles import Shape
 from pliant.errors import ConfigError
 from pliant.experiments.config import merged
 from pliant.spatial import Array
@@ -17,6 +18,7 @@ from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import reachable_force
 from pliant.studies.haptic.script import wishes
 from pliant.telemetry.recorder import Recorder
+from tests.laws.impedance_strategies import profile_of
 
 FLOOR = STUDY.case("floor")
 
@@ -122,7 +124,14 @@ def test_draws_depend_on_the_seed_alone() -> None:
     assert times == sorted(times)
 
 
-def test_reachable_force_is_that_of_two_springs_in_series() -> None:
-    assert reachable_force(0.01, 1e3, 12e3, 300.0, 0.025) == pytest.approx(32.3, abs=0.01)
-    assert reachable_force(0.0, 1e6, 12e3, 150.0, 0.025) == 150.0
-    assert reachable_force(-0.03, 1e6, 12e3, 150.0, 0.025) == 0.0  # the surface is out of reach
+@pytest.mark.parametrize("shape", list(Shape))
+def test_reachable_force_is_where_surface_and_profile_are_equal(shape: Shape) -> None:
+    soft, hard, bound = 1e3, 1e6, 0.025
+    leg = profile_of(12e3, 300.0, bound, shape=shape)
+    assert reachable_force(0.01, soft, leg, bound) == pytest.approx(32.3, abs=0.01)  # two springs in series
+    assert reachable_force(-0.03, hard, leg, bound) == 0.0  # the surface is out of reach
+    stiffens = profile_of(2e3, 150.0, bound, shape=shape)
+    most = reachable_force(0.0, 1e5, stiffens, bound)
+    assert most == pytest.approx(float(stiffens.magnitude(np.array([bound - most / 1e5]))[0]), rel=1e-9)
+    assert most > 1.4 * bound * 1e5 * 2e3 / (1e5 + 2e3)  # what a linear impedance reaches
+    assert most <= 150.0

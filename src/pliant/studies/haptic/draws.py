@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pliant.studies.haptic.config import Environment, Floor, HapticConfig, Hardware, Material, OnlineChanges, Step
-from pliant.studies.haptic.safety import reachable_force
+from pliant.studies.haptic.safety import profile_along, reachable_force
 from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
 
 _DEPTH = 0.003  # m of the target below where the foot touches
@@ -37,8 +37,8 @@ def _scene(config: HapticConfig, rng: np.random.Generator) -> dict[str, Any]:
         friction_moving=0.6 * friction,
     )
     floor = Floor(tilt=(float(tilt[0]), float(tilt[1]), 0.0), material=material)
-    impedance = config.impedance
-    most = reachable_force(0.0, stiffness, impedance.stiffness[2], impedance.force_max[2], 0.8 * impedance.range[2])
+    profile = profile_along(2, config.impedance.tuning(), config)
+    most = reachable_force(0.0, stiffness, profile, 0.8 * config.impedance.range[2])
     force = min(float(rng.uniform(10.0, 40.0)), most)
     x, y, _ = config.steps[0].target or (0.0, 0.0, 0.0)
     target = (x, y, touching_height(floor, x, y, FOOT_RADIUS) - _DEPTH)

@@ -74,7 +74,7 @@ Window = npt.NDArray[np.bool_]
 
 
 def measure(config: HapticConfig, log: Log) -> tuple[Metric, ...]:
-    """One metric per check. Targets are pliant's: control arms have none."""
+    """One metric per check. Targets are pliant's: baselines have none."""
     signals = Signals.of(config, log)
     return tuple(_metric(check, signals, config.controller == JUDGED) for check in config.checks)
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from pliant.controllers.advice import advise, sentences, smallest_inertia
+from pliant.controllers.profiles import ForceProfile
 from pliant.references.planners.workspace import Workspace, workspace_of
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
@@ -105,7 +106,7 @@ def _offsets(wish: Wish, config: HapticConfig) -> list[str]:
         return []
     depth, K_e = below
     K_0, x_b = float(wish.tuning.stiffness[2]), float(wish.tuning.range[2])
-    most = reachable_force(depth, K_e, K_0, F_max, x_b)
+    most = reachable_force(depth, K_e, profile_along(2, wish.tuning, config), x_b)
     if most >= F_d or K_0 == 0.0:
         return []
     enough = F_d * (K_e + K_0) / (K_e * K_0) - depth
@@ -127,19 +128,29 @@ def _surface_below(target: tuple[float, float, float], config: HapticConfig) -> 
     return (depth, floor.material.stiffness) if depth > 0.0 else None
 
 
-def reachable_force(depth: float, surface_stiffness: float, stiffness: float, force_max: float, bound: float) -> float:
-    """Force on a surface of a linear impedance: min(F_max, (x_b + p) K_e K_0/(K_e + K_0)). A lower bound of the largest
-    one where the profile stiffens beyond K_0 (tanh).
+def profile_along(axis: int, tuning: ImpedanceTuning, config: HapticConfig) -> ForceProfile:
+    """The profile of one axis of the foot's impedance."""
+    one = slice(axis, axis + 1)
+    bend = None if tuning.linear_range is None else tuning.linear_range[one]
+    own = ImpedanceTuning(tuning.stiffness[one], tuning.force_max[one], tuning.range[one], bend)
+    return ForceProfile.of(own, config.impedance.profile)
+
+
+def reachable_force(depth: float, surface_stiffness: float, profile: ForceProfile, bound: float) -> float:
+    """The largest force on a surface at rest: K_e d = F(x_b + p − d), d how deep the surface yields.
 
     Args:
         depth: p of the target below the surface, m.
         surface_stiffness: K_e, N/m.
-        stiffness: K_0, N/m.
-        force_max: F_max, N.
-        bound: x_b, m.
+        profile: F, of one axis.
+        bound: x_b of the offset, m.
 
     Returns:
         N.
     """
-    series = surface_stiffness * stiffness / (surface_stiffness + stiffness)
-    return min(force_max, max(bound + depth, 0.0) * series)
+    low, high = 0.0, max(bound + depth, 0.0)
+    for _ in range(60):  # the profile is monotone: halving finds where both are equal
+        middle = 0.5 * (low + high)
+        yields = float(profile.magnitude(np.array([bound + depth - middle]))[0]) > surface_stiffness * middle
+        low, high = (middle, high) if yields else (low, middle)
+    return surface_stiffness * low
