@@ -34,7 +34,7 @@ def test_imports_go_down_only() -> None:
 
 
 def test_a_sideways_import_would_be_noticed(tmp_path: Path) -> None:
-    """Control arm: a package with one forbidden import breaks the same contract."""
+    """Baseline: a package with one forbidden import breaks the same contract."""
     for folder in ("controllers", "simulation"):
         (tmp_path / "toy" / folder).mkdir(parents=True)
         (tmp_path / "toy" / folder / "__init__.py").write_text("")

@@ -79,7 +79,7 @@ def test_rods_and_point_masses_agree(leg3: Robot, seed: int) -> None:
 
 
 def test_a_wrong_inertia_would_be_noticed(lwr4: Robot) -> None:
-    """Control arm: the comparison sees one gram on one link."""
+    """Baseline: the comparison sees one gram on one link."""
     spec = spec_from_robot(lwr4)
     spec.body("A4").mass += 1e-3
     assert disagreement(lwr4, spec.compile(), np.random.default_rng(3)) > 1e-5

@@ -1,4 +1,4 @@
-"""The operational-space control arm: it tracks, and its posture does not disturb the task."""
+"""The operational-space baseline: it tracks, and its posture does not disturb the task."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_the_posture_does_not_disturb_the_task(lwr4: Robot) -> None:
         accelerations.append(task_acceleration(lwr4, q, v, torque))
     assert np.abs(torques[1] - torques[0]).max() > 0.1
     assert accelerations[1] == pytest.approx(accelerations[0], abs=1e-6)
-    # Control arm: the same posture torque without the projection moves the flange.
+    # Baseline: the same posture torque without the projection moves the flange.
     M = pin.crba(lwr4.model, lwr4.model.createData(), q)
     M = np.triu(M) + np.triu(M, 1).T
     plain = torques[0] + M @ (50.0 * (lwr4.home + 0.3 - q))

@@ -86,5 +86,5 @@ def steps_of_a_stiffness_that_jumps(robot: Robot, controller: Controller[object]
 def test_a_stiffness_that_jumps_under_a_standing_error_becomes_a_ramp(lwr4: Robot) -> None:
     tuning = ImpedanceTuning(np.full(3, 500.0), np.full(3, 150.0), np.full(3, 0.1))
     stack = Stack(lwr4, [FrameTask("flange", tuning)], 1e-3)
-    assert steps_of_a_stiffness_that_jumps(lwr4, stack).max() > 0.2  # control arm
+    assert steps_of_a_stiffness_that_jumps(lwr4, stack).max() > 0.2  # baseline
     assert steps_of_a_stiffness_that_jumps(lwr4, StepLimit(stack, lwr4)).max() <= DEFAULT_SHARE * (1 + 1e-9)

@@ -1,4 +1,4 @@
-"""External torque and contact force from joint torques: against the simulator's truth, with control arms."""
+"""External torque and contact force from joint torques: against the simulator's truth, with baselines."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_a_fast_motion_is_no_external_torque_only_if_both_sides_are_equally_late
         estimator = ExternalTorqueEstimator(DirectEstimator(), lwr4, PERIOD, aligned=aligned)
         ticks = run(MujocoPlant(lwr4), estimator, Sway(lwr4, "flange", 0.1, rate=12.0), lwr4, "flange", 500)
         peaks[aligned] = max(np.max(np.abs(tick.estimate.disturbance)) for tick in ticks[100:])
-    assert peaks[True] < 0.25 * peaks[False]  # control arm: the printed form
+    assert peaks[True] < 0.25 * peaks[False]  # baseline: the printed form
 
 
 def test_a_direction_that_no_joint_feels_gets_no_force() -> None:
@@ -84,7 +84,7 @@ def test_a_direction_that_no_joint_feels_gets_no_force() -> None:
     force = np.array([3.0, -2.0, 0.0])
     found = contact_force(J, J.T @ force + 1e-3)
     np.testing.assert_allclose(found, force, atol=5e-3)
-    assert np.abs(np.linalg.solve(J.T, J.T @ force + 1e-3)[2]) > 5.0  # control arm: plain inversion
+    assert np.abs(np.linalg.solve(J.T, J.T @ force + 1e-3)[2]) > 5.0  # baseline: plain inversion
 
 
 def test_bad_input_is_named(lwr4: Robot) -> None:

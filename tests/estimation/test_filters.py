@@ -42,7 +42,7 @@ def test_butterworth_is_scipys(cutoff: float) -> None:
 def test_gain_at_the_cutoff_and_far_above() -> None:
     assert gain_at(Butterworth(20.0, PERIOD), 20.0) == pytest.approx(1 / math.sqrt(2), abs=1e-3)
     assert gain_at(Butterworth(20.0, PERIOD), 100.0) == pytest.approx(1 / 25, rel=0.15)  # 40 dB per decade
-    assert gain_at(FirstOrder(20.0, PERIOD), 100.0) == pytest.approx(1 / 5, rel=0.1)  # control arm: 20 dB per decade
+    assert gain_at(FirstOrder(20.0, PERIOD), 100.0) == pytest.approx(1 / 5, rel=0.1)  # baseline: 20 dB per decade
 
 
 def test_first_order_hits_the_continuous_step_response() -> None:

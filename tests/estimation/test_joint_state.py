@@ -31,7 +31,7 @@ def errors(estimator: Estimator, ticks: int = 6000, **changes: float) -> np.ndar
 
 
 def test_noise_shrinks_as_the_docstring_says() -> None:
-    """σ_q √(a/(2 − a)); control arm: no filter."""
+    """σ_q √(a/(2 − a)); baseline: no filter."""
     gain = PERIOD / 0.3
     settled = errors(JointStateFilter(DirectEstimator(), 0.3))[1500:]
     assert settled.std() == pytest.approx(SIGMA * np.sqrt(gain / (2.0 - gain)), rel=0.25)
@@ -39,7 +39,7 @@ def test_noise_shrinks_as_the_docstring_says() -> None:
 
 
 def test_there_is_no_lag() -> None:
-    """Without noise the moving joint is followed to the error of the trapezium; control arm: a low-pass of the same
+    """Without noise the moving joint is followed to the error of the trapezium; baseline: a low-pass of the same
     memory lags."""
     assert np.abs(errors(JointStateFilter(DirectEstimator(), 0.3), noise=0.0)).max() < 1e-6
     q, lag = 0.0, 0.0

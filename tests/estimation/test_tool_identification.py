@@ -68,7 +68,7 @@ def test_uncertainty_is_honest() -> None:
 
 
 def test_uncertainty_would_be_too_small_with_every_sample_as_a_row() -> None:
-    """Control arm: samples of one pose share its error, and counting each on its own hides that."""
+    """Baseline: samples of one pose share its error, and counting each on its own hides that."""
     errors = standardised_errors(rows_per_pose=20, common=0.5)
     assert np.mean(np.abs(errors) < 1.0) < 0.45
 
@@ -114,7 +114,7 @@ def test_what_is_found_makes_the_contact_wrench_vanish_in_free_space(lwr4: Robot
             estimator = WrenchEstimator(lwr4, {"flange": carried})
             left[name] = np.max(np.abs(estimator.step(m, estimator.init(m))[0].wrenches["flange"]))
         assert left["found"] < 1e-8
-        assert left["no bias"] > 1.0  # control arm
+        assert left["no bias"] > 1.0  # baseline
 
 
 @pytest.mark.parametrize(("name", "frame"), [("lwr4", "flange"), ("iiwa14", "flange"), ("leg3", "foot")])
@@ -129,7 +129,7 @@ def test_chosen_poses_excite_and_keep_the_limits(name: str, frame: str) -> None:
     draw = np.random.default_rng(0)
     near_home = robot.home + draw.uniform(-0.1, 0.1, (8, robot.n))
     assert chosen < 3.0
-    assert excitation([robot.placement(q, frame)[1] for q in near_home]) > 10.0  # control arm
+    assert excitation([robot.placement(q, frame)[1] for q in near_home]) > 10.0  # baseline
 
 
 def test_bad_input_is_named(lwr4: Robot) -> None:

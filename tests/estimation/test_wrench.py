@@ -40,7 +40,7 @@ def test_contact_wrench_survives_rotation_and_weight(lwr4: Robot) -> None:
         m = measurement(lwr4, q, reading)
         np.testing.assert_allclose(last(estimator, [m]).wrenches["flange"], contact, atol=1e-9)
         error = np.linalg.norm(last(bare, [m]).wrenches["flange"][:3] - contact[:3])
-        assert error == pytest.approx(9.81 * mass, rel=1e-9)  # control arm: nothing compensated
+        assert error == pytest.approx(9.81 * mass, rel=1e-9)  # baseline: nothing compensated
 
 
 def test_weight_is_that_of_pinocchio(lwr4: Robot) -> None:

@@ -42,7 +42,7 @@ def test_the_arm_comes_to_rest_and_stays(lwr4: Robot, seed: int) -> None:
 
 
 def test_plain_springs_run_away(lwr4: Robot) -> None:
-    """Control arm."""
+    """Baseline."""
     speeds = np.abs(joint_speeds(lwr4, Law.SPRING, 4.0, 0)).max(axis=1)
     assert speeds[-1000:].max() > 10.0
     assert speeds[-1000:].max() > 2.0 * speeds[:1000].max()

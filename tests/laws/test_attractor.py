@@ -40,7 +40,7 @@ def test_capped_force_is_odd_and_within_the_profile_and_force_max(
 
 
 def test_the_corrected_stack_law_exceeds_force_max() -> None:
-    """Control arm: [Stack] Algorithm 1 past saturation."""
+    """Baseline: [Stack] Algorithm 1 past saturation."""
     assert back(Law.STACK_CORRECTED, SATURATING, 0.999, 0.2)[0] > 1.5 * SATURATING.force_max[0]
 
 
@@ -56,7 +56,7 @@ def test_capped_force_is_continuous_where_convergence_starts(profile: ForceProfi
 
 @pytest.mark.parametrize("law", [Law.STACK_PRINTED, Law.STACK_CORRECTED])
 def test_the_stack_paper_laws_jump_where_convergence_starts(law: Law) -> None:
-    """Control arm."""
+    """Baseline."""
     assert abs(back(law, SATURATING, 1.0 - 1e-9, 0.1)[0] - float(SATURATING.force([0.1])[0])) > 50.0
 
 
@@ -116,7 +116,7 @@ def test_capped_law_is_passive_on_interrupted_convergence(profile: ForceProfile)
 def test_the_printed_laws_create_energy_on_interrupted_convergence(
     law: Law, profile: ForceProfile, share: float, created: float
 ) -> None:
-    """Control arm of the test above: the same path, more than `created` of the stored energy out of nothing."""
+    """Baseline of the test above: the same path, more than `created` of the stored energy out of nothing."""
     x_m = (4.0 if law is Law.STACK_CORRECTED else 1.05) * float(profile.range[0])
     assert least_margin(law, profile, [(x_m, False), (share * x_m, True)]) < -created
     assert least_margin(Law.CAPPED, profile, [(x_m, False), (share * x_m, True)]) > -1e-3
@@ -158,7 +158,7 @@ def test_no_damping_parks_it_halfway(profile: ForceProfile, damping: float) -> N
 
 
 def test_without_the_time_out_it_parks_halfway() -> None:
-    """Control arm."""
+    """Baseline."""
     run = run_mass(SATURATING, start=0.05, damping=200.0, seconds=3.0, settings=PhaseSettings(hold_limit=np.inf))
     assert 0.4 * 0.05 < np.abs(run.error[-1]) < 0.6 * 0.05
 
@@ -203,7 +203,7 @@ def test_the_whole_attractor_is_passive_under_pushes(profile: ForceProfile, blen
 
 def test_a_blend_as_long_as_a_swing_creates_energy_unless_it_has_to_pay() -> None:
     assert margin_under_pushes(STIFFENING, 0.05, 1e-3).min() > -0.01
-    assert margin_under_pushes(STIFFENING, 0.05, 1e-3, account=False).min() < -0.1  # control arm
+    assert margin_under_pushes(STIFFENING, 0.05, 1e-3, account=False).min() < -0.1  # baseline
 
 
 def test_where_convergence_ends_the_force_does_not_jump() -> None:
@@ -214,7 +214,7 @@ def test_where_convergence_ends_the_force_does_not_jump() -> None:
     steps = {blend_time: np.abs(np.diff(run.force)).max() for blend_time, run in runs.items()}
     # N: an eighth of the way from −F_max to F_max, K_0 v T_s, and what the account cannot pay for
     assert steps[0.008] < 2.0 * 100.0 / 8 + 2.5 + 5.0
-    assert steps[0.0] > 40.0  # control arm
+    assert steps[0.0] > 40.0  # baseline
 
 
 def test_noise_does_not_make_the_phase_chatter() -> None:

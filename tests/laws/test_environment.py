@@ -100,7 +100,7 @@ def test_the_belief_is_kept_at_standstill() -> None:
 
 
 def test_ungated_standstill_would_lose_it() -> None:
-    """Control arm: with every sample used, and shown however inaccurate, noise replaces what was learnt."""
+    """Baseline: with every sample used, and shown however inaccurate, noise replaces what was learnt."""
     K, B = 1e4, 100.0
     fit = EnvironmentFit(FitConfig(least_force=0.0, least_motion=0.0, accuracy=1e9), PERIOD)
     moved = run(fit, samples(K, B, 1.0))[-1]
@@ -137,7 +137,7 @@ def test_known_noise_does_not_bias_and_hides_what_it_hides() -> None:
     knowing = config.model_copy(update={"noise_depth": 2e-4})
     assert hidden(1e4, knowing) == pytest.approx(1e4, rel=0.02)
     assert hidden(1e6, knowing) is None  # 8 µm behind 0.2 mm
-    blind = hidden(1e4, config)  # control arm
+    blind = hidden(1e4, config)  # baseline
     assert blind is not None
     assert blind < 0.98 * 1e4
 

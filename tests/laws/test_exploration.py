@@ -1,4 +1,4 @@
-"""Laws of the haptic exploration on a mass that touches a spring, each with the printed algorithm as control arm."""
+"""Laws of the haptic exploration on a mass that touches a spring, each with the printed algorithm as baseline."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_soft_ball_is_reached_from_both_sides(mass: float) -> None:
     assert settled(log, 1.0, 2.0, 25, 0.5) < 0.25
     assert settled(log, 2.0, 3.0, 8, 0.85) < 0.25
     assert late_rms(log, 8) < 0.02
-    fixed = ExplorationConfig(stiffness_floor=6000.0)  # control arm: without the stiffness estimate it crawls
+    fixed = ExplorationConfig(stiffness_floor=6000.0)  # baseline: without the stiffness estimate it crawls
     slow = run(World(x=0.0, mass=mass, **BALL), events, 3.0, fixed)
     assert settled(slow, 1.0, 2.0, 25, 0.5) > 0.4
 
@@ -64,7 +64,7 @@ def test_negative_force_is_the_mirror_image() -> None:
     down = run(World(x=-0.001, side=-1.0, **FLOOR), [(0, 0.002, -40, T)], 0.8)
     np.testing.assert_allclose(down.force, -up.force, atol=1e-6)
     printed = run(World(x=-0.001, side=-1.0, **FLOOR), [(0, 0.002, -40, T)], 0.8, PAPER)
-    assert late_rms(printed, -40) > 20.0  # control arm: runs the wrong way
+    assert late_rms(printed, -40) > 20.0  # baseline: runs the wrong way
 
 
 @pytest.mark.parametrize("world", [BALL, {"stiffness": 2e4, "damping": 2e2}])
@@ -144,7 +144,7 @@ def test_seek_finds_a_surface_above_which_the_target_lies() -> None:
 
 
 def test_printed_reset_fires_when_the_force_is_reached() -> None:
-    """Control arm for the reset: printed, the offset drops to zero while regulating."""
+    """Baseline for the reset: printed, the offset drops to zero while regulating."""
     T = tuning()
     printed = run(World(x=0.0, **BALL), [(0, -0.01, 15, T)], 3.0, ExplorationConfig(mode="paper", reset=True))
     ours = run(World(x=0.0, **BALL), [(0, -0.01, 15, T)], 3.0)
@@ -178,7 +178,7 @@ def test_fifty_changes_online_never_break_a_bound(seed: int, world: dict[str, fl
 
 
 def test_printed_algorithm_breaks_a_bound_that_shrinks() -> None:
-    """Control arm: with the force reached it holds the offset, whatever the bound."""
+    """Baseline: with the force reached it holds the offset, whatever the bound."""
     wide, narrow = tuning(6000, 150, 0.025), tuning(6000, 150, 0.002)
     soft = {"stiffness": 1e3, "damping": 1e2}
     events = [(0, -0.002, 15, wide), (2.5, -0.002, 0, narrow)]

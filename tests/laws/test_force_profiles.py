@@ -52,7 +52,7 @@ def test_force_is_continuous_at_the_knee(profile: ForceProfile) -> None:
 
 
 def test_the_tanh_profile_without_its_shift_jumps_at_the_knee() -> None:
-    """Control arm: F_0 + ½ ΔF (tanh z + 1) starts 0.2 % of ΔF too high."""
+    """Baseline: F_0 + ½ ΔF (tanh z + 1) starts 0.2 % of ΔF too high."""
     profile = profile_of(1000.0, 150.0, 0.025, shape=Shape.TANH)
     z = (profile.linear_range - profile.range) / profile.length + np.pi
     rise = profile.force_max - profile.knee_force

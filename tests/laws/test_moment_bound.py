@@ -47,7 +47,7 @@ def test_no_moment_exceeds_its_bound(lwr4: Robot) -> None:
 
 
 def test_without_the_bound_moments_are_up_to_several_times_as_large(lwr4: Robot) -> None:
-    """Control arm: the same profiles where nothing shrinks the vector."""
+    """Baseline: the same profiles where nothing shrinks the vector."""
     worst, _ = largest_share(lwr4, Law.SPRING, 300)
     assert worst > 2.0
 

@@ -1,4 +1,4 @@
-"""Momentum observer: first-order response to a constant disturbance, friction, payload, contact; with control arms."""
+"""Momentum observer: first-order response to a constant disturbance, friction, payload, contact; with baselines."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_constant_disturbance_is_found_as_a_first_order_response(lwr4: Robot, ga
     time = np.array([tick.estimate.time for tick in ticks])
     expected = bias * (1.0 - np.exp(-gain * time))
     np.testing.assert_allclose(disturbances(ticks), expected[:, None] * np.ones(robot.n), atol=0.02 * bias)
-    slower = bias * (1.0 - np.exp(-0.8 * gain * time))  # control arm: the tolerance tells a gain from 0.8 of it
+    slower = bias * (1.0 - np.exp(-0.8 * gain * time))  # baseline: the tolerance tells a gain from 0.8 of it
     assert np.max(np.abs(disturbances(ticks) - slower[:, None])) > 0.04 * bias
 
 
@@ -79,7 +79,7 @@ def test_friction_of_the_drives_is_found_where_the_torque_is_the_one_sent(lwr4: 
         delayed[k] = delayed[k - 1] + (1.0 - np.exp(-0.1)) * (friction[k - 1] - delayed[k - 1])
     assert np.max(np.abs(friction)) > 0.5
     assert np.max(np.abs(found["sent"] - delayed)) < 0.03
-    # Control arm: the torque sensors sit behind the drives' friction, so they show nothing of it.
+    # Baseline: the torque sensors sit behind the drives' friction, so they show nothing of it.
     assert np.max(np.abs(found["measured"])) < 0.03
 
 
@@ -120,7 +120,7 @@ def test_a_contact_is_a_disturbance_unless_its_force_is_taken_into_account() -> 
     explained, whole, _ = pressing("all")
     assert np.max(np.abs(whole)) > 5.0
     assert np.max(np.abs(explained)) < 0.05
-    ignored, whole, _ = pressing("none")  # control arm
+    ignored, whole, _ = pressing("none")  # baseline
     lag = 1.0 / GAIN  # s; the contact torque changes slowly against it
     rate = np.max(np.abs(np.gradient(whole, 1e-3, axis=0)[50:]))
     assert np.max(np.abs(ignored - whole)[50:]) < rate * lag + 0.05

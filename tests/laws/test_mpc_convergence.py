@@ -31,7 +31,7 @@ def test_it_converges_from_start_errors_of_a_fifth_of_a_radian(settings: MpcConf
 
 
 def test_without_the_cross_terms_of_the_hessian_it_needs_more_steps() -> None:
-    """Control arm: the same problem, solver and starts, with L_xu dropped as public implementations do."""
+    """Baseline: the same problem, solver and starts, with L_xu dropped as public implementations do."""
     crocoddyl_bridge = pytest.importorskip("pliant.mpc.crocoddyl.bridge", exc_type=Exception)
     mim_solvers = pytest.importorskip("mim_solvers")
 

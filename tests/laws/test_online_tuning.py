@@ -73,13 +73,13 @@ def test_the_force_bound_holds_at_every_tick(lwr4: Robot, change_every: int, see
 
 
 def test_a_plain_spring_runs_away_under_the_same_changes(lwr4: Robot) -> None:
-    """Control arm."""
+    """Baseline."""
     log = simulate(lwr4, Law.SPRING, 20, 3.0, 1)
     assert np.abs([row["v"] for row in log[-500:]]).max() > 40.0
 
 
 def test_the_corrected_stack_law_breaks_the_force_bound(lwr4: Robot) -> None:
-    """Control arm."""
+    """Baseline."""
     log = simulate(lwr4, Law.STACK_CORRECTED, 20, 1.0, 1)
     limits = np.array([row["limit"] for row in log])
     assert np.any(np.abs(forces(log)) > 1.2 * limits)
@@ -111,6 +111,6 @@ def test_the_ledger_agrees_with_the_work_in_the_joints(lwr4: Robot) -> None:
 
 
 def test_a_margin_of_a_plain_spring_goes_below_zero(lwr4: Robot) -> None:
-    """Control arm: sampling makes an undamped spring create energy, and the ledger shows it."""
+    """Baseline: sampling makes an undamped spring create energy, and the ledger shows it."""
     log = simulate(lwr4, Law.SPRING, 10**9, 2.0, 7)
     assert min(float(row["ee/storage_margin"].min()) for row in log) < -0.1

@@ -150,7 +150,7 @@ def random_worlds(attractor: Attractor, wall: tuple[float, float] = (0.0, 0.0)) 
 
 def test_sixty_random_worlds_come_to_rest() -> None:
     assert random_worlds(with_account()).max() < 1e-3
-    assert random_worlds(blend_alone()).max() > 3e-3  # control arm
+    assert random_worlds(blend_alone()).max() > 3e-3  # baseline
 
 
 def test_a_moving_wall_moves_the_mass_by_no_more_than_itself() -> None:

@@ -1,4 +1,4 @@
-"""Laws of the harmonic planner, each with the printed attractor as control arm where it breaks the law."""
+"""Laws of the harmonic planner, each with the printed attractor as baseline where it breaks the law."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_hull_at_each_instant_holds_only_the_targets_so_far(start, sequence):
 
 
 def test_attractor_leaves_the_hull_when_retargeted():
-    """Control arm: printed it runs away; corrected it overshoots by centimetres."""
+    """Baseline: printed it runs away; corrected it overshoots by centimetres."""
     sequence = [(0.5, (0.4, 0.0, 0.0)), (3.0, (0.1, 0.0, 0.0))]
     corners = [(0.0, 0.0, 0.0), (0.4, 0.0, 0.0), (0.1, 0.0, 0.0)]
     random = np.random.default_rng(5)
@@ -108,7 +108,7 @@ def test_mirror_and_translation(start, sequence, shift):
 
 
 def test_printed_attractor_depends_on_origin_and_sign():
-    """Control arm: the same step of 0.3 m, elsewhere and the other way round."""
+    """Baseline: the same step of 0.3 m, elsewhere and the other way round."""
 
     def travelled(start, target):
         return integrated((start, 0.0, 0.0), [(9.0, (target, 0.0, 0.0))], printed=True, seconds=4.0)[-1, 0] - start
@@ -135,7 +135,7 @@ def test_summed_speed_and_acceleration_keep_their_limits(start, sequence):
 
 
 def test_without_stretching_the_sum_breaks_the_limit():
-    """Control arm: two pieces of their own shortest time, one after half of the other."""
+    """Baseline: two pieces of their own shortest time, one after half of the other."""
     duration = LIMITS.duration(0.4)
     first = Plan((0.0, 0.0, 0.0)).retargeted(0.0, (0.4, 0.0, 0.0), LIMITS)
     naive = Plan(first.base, (*first.pieces, first.pieces[0]._replace(start=0.5 * duration, target=(0.8, 0.0, 0.0))))

@@ -1,6 +1,6 @@
 """The predicted contact slides as Coulomb says, sticks as a spring, dissipates, and steps stably however stiff it is.
 
-A mass on three sliders under the compiled node. Control arms: the contact that sticks, a law that creeps, the explicit
+A mass on three sliders under the compiled node. Baselines: the contact that sticks, a law that creeps, the explicit
 step.
 """
 
@@ -69,7 +69,7 @@ def test_in_steady_sliding_the_force_is_the_limit_against_the_velocity(axes: str
     force = Slider(FRICTION, axes).moved(velocity)
     np.testing.assert_allclose(force[100:, :2], -LIMIT * velocity[100:, :2] / 0.2, atol=2e-3 * LIMIT)
     sticking = np.linalg.norm(Slider(STICKS, axes).moved(velocity)[:, :2], axis=1)
-    assert sticking[200] == pytest.approx(2.0 * sticking[100])  # control arm: it grows without bound
+    assert sticking[200] == pytest.approx(2.0 * sticking[100])  # baseline: it grows without bound
     assert sticking[200] > 70.0 * LIMIT
 
 
@@ -96,7 +96,7 @@ def test_on_a_circle_the_force_lags_by_what_the_bristle_bends() -> None:
 
 
 def test_at_rest_it_is_a_spring() -> None:
-    """Pulled by 20 µm and held for 3 s. Control arm: with a speed √(ẋ² + ε²) in its place the force creeps away."""
+    """Pulled by 20 µm and held for 3 s. Baseline: with a speed √(ẋ² + ε²) in its place the force creeps away."""
     pull, hold = steady(0.5, 2e-4, 34), np.zeros((1000, 3))
     velocity = np.vstack([np.zeros((1, 3)), pull, hold])
     force = Slider(FRICTION).moved(velocity)[:, :2]
@@ -110,7 +110,7 @@ def test_at_rest_it_is_a_spring() -> None:
 
 
 def test_pulling_back_and_forth_dissipates_the_same_at_any_frequency() -> None:
-    """4 μ λ_n A per cycle. Control arm: what a contact that sticks dissipates, in its damper, grows with frequency."""
+    """4 μ λ_n A per cycle. Baseline: what a contact that sticks dissipates, in its damper, grows with frequency."""
     amplitude = 0.02  # m
 
     def per_cycle(friction: float, frequency: float, dt: float = 5e-4) -> float:

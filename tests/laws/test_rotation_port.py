@@ -30,7 +30,7 @@ def test_the_moment_does_the_work_of_the_error_port(e: np.ndarray, h: np.ndarray
 
 
 def test_the_plain_moment_misses_by_an_eighth_at_a_quarter_radian() -> None:
-    """Control arm: m = h with unequal gains, worst axis of rotation."""
+    """Baseline: m = h with unequal gains, worst axis of rotation."""
     e = 0.25 * np.array([1.0, 1.0, 1.0]) / np.sqrt(3.0)
     worst = 0.0
     for h in np.eye(3):

@@ -115,7 +115,7 @@ def test_no_change_breaks_a_bound(steered: Steered, label: str, frame: str) -> N
 
 
 def test_the_bounds_were_reached_and_moved(steered: Steered) -> None:
-    """Control arm: the changes arrived and mattered, so that the law above could have been broken."""
+    """Baseline: the changes arrived and mattered, so that the law above could have been broken."""
     assert steered.accepted >= 15
     assert steered.refused >= 5
     force, bound = force_and_bound(steered.log, "ee", "flange")

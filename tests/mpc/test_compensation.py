@@ -41,7 +41,7 @@ def test_the_disturbance_is_taken_out_of_the_torque() -> None:
     plain = steps(controller(), [_estimate()])[0]
     compensated = steps(controller(disturbance=True), [believing(_estimate(), 1.5)])[0]
     np.testing.assert_allclose(compensated, plain - 1.5, atol=1e-12)
-    assert np.abs(steps(controller(), [believing(_estimate(), 1.5)])[0] - plain).max() == 0.0  # control arm: not asked
+    assert np.abs(steps(controller(), [believing(_estimate(), 1.5)])[0] - plain).max() == 0.0  # baseline: not asked
 
 
 def test_a_disturbance_that_is_not_finite_keeps_the_last_one() -> None:
@@ -52,7 +52,7 @@ def test_a_disturbance_that_is_not_finite_keeps_the_last_one() -> None:
 
 
 def test_an_average_passes_a_constant_and_stops_what_rings() -> None:
-    """The mean over 4 ms has zeros at 250 and 500 Hz; control arm: without it the ringing passes."""
+    """The mean over 4 ms has zeros at 250 and 500 Hz; baseline: without it the ringing passes."""
     made = controller(averaging=4e-3).compensator
     bare = controller().compensator
     seen: dict[str, list[float]] = {"averaged": [], "bare": []}

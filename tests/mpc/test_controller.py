@@ -176,7 +176,7 @@ def test_a_reference_without_phases_follows_the_contact_that_is_felt() -> None:
 
 
 def test_a_task_without_orientation_leaves_it_free() -> None:
-    """Control arm: with the orientation the same start costs a turning torque."""
+    """Baseline: with the orientation the same start costs a turning torque."""
     start = ROBOT.home + np.array([0.0, 0.0, 0.0, 0.0, 0.3, 0.0])
     position, R = ROBOT.placement(start, "tool")
     home_R = ROBOT.placement(ROBOT.home, "tool")[1]
@@ -190,7 +190,7 @@ def test_a_task_without_orientation_leaves_it_free() -> None:
 
 
 def test_torque_bounds_are_planned_with_instead_of_clamped() -> None:
-    """Control arm: without bounds the same wish is cut off by the clamp."""
+    """Baseline: without bounds the same wish is cut off by the clamp."""
     weak = polishing_arm()
     limit = np.abs(_gravity(ROBOT.home)) + 5.0
     weak.model.upperEffortLimit = limit

@@ -50,4 +50,4 @@ def test_compensation_presses_where_the_stock_controller_does_not(capsys: pytest
         assert found
         means[which] = float(found[1])
     assert means["offset-free"] == pytest.approx(20.0, abs=0.2)
-    assert abs(means["stock"] - 20.0) > 2.0  # control arm
+    assert abs(means["stock"] - 20.0) > 2.0  # baseline

@@ -87,7 +87,7 @@ def test_torque_bounds(kind: str, dim: int) -> None:
     rest = solver.us  # of the force that is there; the bounds leave 60 % of the way to what is wanted
     part = rest + 0.6 * (unbounded - rest)
     lower, upper = np.minimum(rest, part) - 1e-3, np.maximum(rest, part) + 1e-3
-    assert np.max(np.maximum(unbounded - upper, lower - unbounded)) > 1e-2  # control arm: without the bound it breaks
+    assert np.max(np.maximum(unbounded - upper, lower - unbounded)) > 1e-2  # baseline: without the bound it breaks
     solver.nodes.torque_lower[:-1] = lower
     solver.nodes.torque_upper[:-1] = upper
     solution = solver.solve(x0, max_iterations=100, tolerance=1e-7)
@@ -112,7 +112,7 @@ def test_force_bounds(kind: str, dim: int) -> None:
     problem = Condensed(nodes_like(solver, robot, kind, dim), x0)
     free, _ = polishing(robot, kind, dim)
     free.nodes.force_reference[:, normal] = 60.0
-    assert np.max(free.solve(x0, max_iterations=50).forces[:, normal]) > highest + 1.0  # control arm
+    assert np.max(free.solve(x0, max_iterations=50).forces[:, normal]) > highest + 1.0  # baseline
     solver.nodes.force_lower[:, normal] = 0.0
     solver.nodes.force_upper[:, normal] = highest
     solution = solver.solve(x0, max_iterations=100, tolerance=1e-7)
@@ -148,7 +148,7 @@ def test_friction_cone(kind: str) -> None:
         return mu * forces[chosen, 2] - np.linalg.norm(forces[chosen, :2], axis=1)
 
     unbounded = free.solve(x0, max_iterations=50)
-    assert np.min(margin(problem.evaluate(unbounded.us.ravel())[2])) < -1.0  # control arm
+    assert np.min(margin(problem.evaluate(unbounded.us.ravel())[2])) < -1.0  # baseline
     solver.nodes.friction = mu
     solution = solver.solve(x0, max_iterations=100, tolerance=1e-7)
     assert solution.status == "converged"

@@ -14,7 +14,7 @@ STEP = 1e-6
 
 @pytest.mark.parametrize("axes", ["world", "surface"])
 def test_acceleration_by_force_uses_the_contact_axes(axes: str) -> None:
-    """∂v̇/∂λ = M⁻¹Jᵀ with J in the contact's axes; J in local axes (the control arm) is far off."""
+    """∂v̇/∂λ = M⁻¹Jᵀ with J in the contact's axes; J in local axes (the baseline) is far off."""
     robot = random_chain(7, 40)
     node, twin = node_and_twin(robot, "force_feedback", 1, axes, 1)
     x, u = random_point(node, robot, 1)

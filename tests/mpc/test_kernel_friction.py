@@ -201,7 +201,7 @@ def test_warm_noisy_loop_converges_as_without_friction(dim: int, speed: float, t
 @pytest.mark.parametrize("press", [True, False])
 @pytest.mark.parametrize("friction", [0.25, 0.6])
 def test_what_the_docs_recommend_converges_and_the_default_costs_do_not(press: bool, friction: float) -> None:
-    """K_t = 1e3, B_t = 10, force costs on the normal only, as the benchmark moves. Control arm: costs on all axes."""
+    """K_t = 1e3, B_t = 10, force costs on the normal only, as the benchmark moves. Baseline: costs on all axes."""
     robot = Robot.load("iiwa14", tool=Tool())
     reached = {}
     for activation in ((0.0, 0.0, 1.0), (1.0,)):
@@ -235,7 +235,7 @@ def test_it_converges_through_a_reversal() -> None:
 
 
 def test_a_force_that_friction_cannot_carry_ends_with_an_honest_status() -> None:
-    """15 N wanted along the surface where the limit is 6 N: no solution is claimed. Control arm: 5 N are reached."""
+    """15 N wanted along the surface where the limit is 6 N: no solution is claimed. Baseline: 5 N are reached."""
     for wanted, reachable in ((5.0, True), (15.0, False)):
         solver, x0 = sliding_solver(3, 0.0, 0.3, tangential_costs=True)
         x0[16] = 20.0
@@ -250,7 +250,7 @@ def test_a_force_that_friction_cannot_carry_ends_with_an_honest_status() -> None
 
 
 def test_the_plan_keeps_what_the_contact_can_carry() -> None:
-    """Control arm: a contact that sticks predicts forces far outside, from the same state."""
+    """Baseline: a contact that sticks predicts forces far outside, from the same state."""
     peaks = {}
     for friction in (0.25, np.inf):
         solver, x0 = sliding_solver(3, 0.2, friction)

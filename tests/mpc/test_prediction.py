@@ -72,7 +72,7 @@ def errors(ticks: list[Tick], stiffness: float, touching: bool | None = None) ->
 
 def test_free_space_is_predicted() -> None:
     v, v_stale, *_ = errors(recorded(-0.05), 1e4)
-    assert v < 0.03 * v_stale  # control arm: no prediction
+    assert v < 0.03 * v_stale  # baseline: no prediction
     v_damped, v_stale, *_ = errors(recorded(-0.05, damping=0.5), 1e4)
     assert v < v_damped < 0.35 * v_stale  # the observed disturbance lags
 
@@ -82,8 +82,8 @@ def test_contact_is_predicted_with_its_stiffness() -> None:
     v, v_stale, force, force_stale = errors(ticks, 1e4)
     assert force < 0.15 * force_stale
     assert v < 0.1 * v_stale
-    assert errors(ticks, 3e3)[2] > 3.0 * force  # control arm: another stiffness
-    assert errors(ticks, 1e4, touching=False)[2] > 3.0 * force  # control arm: no contact in the model
+    assert errors(ticks, 3e3)[2] > 3.0 * force  # baseline: another stiffness
+    assert errors(ticks, 1e4, touching=False)[2] > 3.0 * force  # baseline: no contact in the model
 
 
 def test_a_contact_does_not_pull() -> None:
@@ -95,7 +95,7 @@ def test_a_contact_does_not_pull() -> None:
     up = 60.0 * pin.computeFrameJacobian(ROBOT.model, data, ROBOT.home, frame, axes)[2]
     weight = np.array(pin.computeGeneralizedGravity(ROBOT.model, ROBOT.model.createData(), ROBOT.home))
     assert prediction.ahead(x, [weight + up] * 20, weight, True)[12] == 0.0
-    assert prediction.ahead(x, [weight - up] * 20, weight, True)[12] > 2.0  # control arm: pressed
+    assert prediction.ahead(x, [weight - up] * 20, weight, True)[12] > 2.0  # baseline: pressed
 
 
 def test_nothing_under_way_changes_nothing() -> None:

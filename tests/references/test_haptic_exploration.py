@@ -176,7 +176,7 @@ def test_offset_follows_the_normal_whatever_the_friction(friction: float) -> Non
     along_normal, along_tangent = slide("normal", friction, 0.3)
     assert along_normal < -0.99
     assert abs(along_tangent) < 0.1
-    assert abs(slide("axes", friction, 0.3)[1]) > 0.25  # control arm: straight down leaks into the tangent
+    assert abs(slide("axes", friction, 0.3)[1]) > 0.25  # baseline: straight down leaks into the tangent
 
 
 def test_normal_is_left_alone_at_rest_and_kept_in_its_cone() -> None:

@@ -108,7 +108,7 @@ def test_attractor_planner_goes_to_a_single_target(lwr4: Robot) -> None:
     np.testing.assert_allclose(rows[0].position, start, atol=1e-6)
     np.testing.assert_allclose(rows[-1].position, target, atol=2e-3)
     printed = AttractorPlanner(Mailbox(goal(*target)), lwr4.placement, AttractorSettings(printed=True))
-    assert np.linalg.norm(play(lwr4, printed, 3.0)[-1].position - target) > 0.02  # control arm
+    assert np.linalg.norm(play(lwr4, printed, 3.0)[-1].position - target) > 0.02  # baseline
 
 
 def test_target_outside_the_workspace_is_brought_back_and_reported(lwr4: Robot) -> None:

@@ -65,7 +65,7 @@ def test_path_stays_on_one_branch(robot: Robot, source: PostureSource) -> None:
 
 
 def test_independent_samples_would_jump(robot: Robot) -> None:
-    """Control arm: solved one by one from random starts, the same poses give other branches."""
+    """Baseline: solved one by one from random starts, the same poses give other branches."""
     solver, random = METHODS["mink"](robot, "flange"), np.random.default_rng(1)
     box, target = joint_box(robot), Target(np.array([0.0, -0.6, 0.5]), ALONG_Y)
     starts = random.uniform(box.lower, box.upper, (20, robot.n))

@@ -69,7 +69,7 @@ def test_circle_starts_where_contact_was_made() -> None:
 
 def test_eased_path_starts_at_rest_and_stays_on_the_path() -> None:
     plain, eased = lemniscate(), lemniscate().eased(2.0)
-    assert np.linalg.norm(plain.at(0.0).rate) > 0.3  # control arm: without easing it starts at full speed
+    assert np.linalg.norm(plain.at(0.0).rate) > 0.3  # baseline: without easing it starts at full speed
     start = eased.at(0.0)
     np.testing.assert_array_equal(start.value, plain.at(0.0).value)
     assert not start.rate.any()

@@ -65,7 +65,7 @@ def test_truth_lies_within_three_sigma(lwr4: Robot) -> None:
 
 
 def test_the_arm_has_to_be_still(lwr4: Robot) -> None:
-    """Control arm: read right after a fast move, the tool's inertia would count as weight."""
+    """Baseline: read right after a fast move, the tool's inertia would count as weight."""
     hasty = FAST.model_copy(update={"poses": 4, "move": 0.4, "settle": 0.002, "average": 0.05})
     with pytest.raises(RunFailedError, match="still moved at pose"):
         run_identification(lwr4, noisy(lwr4), OperationalSpace(lwr4, "flange"), hasty)

@@ -75,7 +75,7 @@ def test_without_delay_the_three_come_out_in_the_papers_order(pid: bool) -> None
     ],
 )
 def test_each_part_is_needed(part: str, changes: dict[str, Any]) -> None:
-    """Control arms: without it the same run fails or tracks three times worse."""
+    """Baselines: without it the same run fails or tracks three times worse."""
     tilt, seed = DRAWS[0]
     result = run_case(STUDY, config_of(BEST, tilt, seed, False, 5e-3, control=changes))
     whole = results(BEST, False, 5e-3)[0]

@@ -33,7 +33,7 @@ SUMMARY = Summary(
             failures=("diverged at t = 3.1000 s",),
             seeds=tuple(range(10)),
         ),
-        Case("figure8-plain", "spring", (Metric("peak torque", 176.0, "N·m"),), note="control arm"),
+        Case("figure8-plain", "spring", (Metric("peak torque", 176.0, "N·m"),), note="baseline"),
     ),
 )
 
@@ -106,7 +106,7 @@ def test_table_and_markdown_show_targets_and_failures() -> None:
             "≥ 30.0",
             "never",
             "1 of 10 runs failed (≤ 39 %): diverged",
-            "control arm",
+            "baseline",
         ):
             assert expected in text
         assert (text.count("✗"), text.count("✓")) in {(2, 2), (3, 2)}  # the terminal marks the failed run too

@@ -145,7 +145,7 @@ void solve_repeatedly(int dof, const ModelData& m, bool bounded, const char* nam
   const int before_construction = allocations;
   Engine* engine = k.create(chain, m, {N, 3e-3, 1e-9, 8, 10, bounded});
   check(engine != nullptr, "an engine is made", name);
-  check(allocations > before_construction, "the counter counts construction", name);  // control arm
+  check(allocations > before_construction, "the counter counts construction", name);  // baseline
   double x0[3 * max_joints] = {}, xs[(N + 1) * 3 * max_joints], us[N * max_joints];
   Noise noise;
   int converged = 0, cycles = 50;

@@ -122,7 +122,7 @@ def study(
     out: Out = None,
     set_: Sets = None,
 ) -> None:
-    """Runs a whole study, control arms included: the tables and figures of a paper, beside the paper's numbers."""
+    """Runs a whole study, baselines included: the tables and figures of a paper, beside the paper's numbers."""
     from pliant.cli.study import resume_command, study_command
     from pliant.experiments.results import Request
 

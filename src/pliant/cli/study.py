@@ -1,4 +1,4 @@
-"""`pliant study`: every case of a study, with control arms and seeds; tables and figures beside the paper's."""
+"""`pliant study`: every case of a study, with baselines and seeds; tables and figures beside the paper's."""
 
 from __future__ import annotations
 

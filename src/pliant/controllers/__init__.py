@@ -1,4 +1,4 @@
-"""Controllers that answer within one tick: fractal impedances, their stack, and control arms to compare with."""
+"""Controllers that answer within one tick: fractal impedances, their stack, and baselines to compare with."""
 
 from pliant.controllers.attractor import Law, PhaseSettings
 from pliant.controllers.fractal_impedance import FractalImpedance

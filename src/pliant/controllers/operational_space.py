@@ -1,4 +1,4 @@
-"""The operational-space controller: a control arm that knows the dynamics and inverts them."""
+"""The operational-space controller: a baseline that knows the dynamics and inverts them."""
 
 from __future__ import annotations
 

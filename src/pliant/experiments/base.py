@@ -134,7 +134,7 @@ class Study(ABC, Generic[C]):
         return self.cases[name]
 
     def runs(self, case: str, seeds: int | None = None) -> Sequence[C]:
-        """Every run of a case in the full study: control arms, variants and seeds.
+        """Every run of a case in the full study: baselines, variants and seeds.
 
         Args:
             case: name of the case.
