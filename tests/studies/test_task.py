@@ -78,7 +78,8 @@ def test_a_user_begins_a_task_runs_it_and_compares_controllers(tmp_path: Path, m
         assert done.exit_code == 0, done.output
         study_of(f"{pattern}.toml")
     assert CLI.invoke(app, ["new", "task", "raster", "-o", "raster.toml"]).exit_code == 2  # nothing is overwritten
-    sets = ["--set", "path.time=0.4", "--set", "phases.stand_off=0.01", "--set", "phases.press=0.2"]
+    sets = ["--set", "path.time=0.2", "--set", "phases.stand_off=0.01", "--set", "phases.press=0.1"]
+    sets += ["--set", "phases.leave=0.1", "--set", "surface.pose.xyz=[0.55,0.0,0.1]"]
     done = CLI.invoke(
         app, ["compare", "hold.toml", "--controllers", "offset-free-mpc,haptic", "--seeds", "1", "--out", "o", *sets]
     )

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.entries import Believed
 from pliant.experiments.base import Experiment
 from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
+from pliant.robot import Robot
 from pliant.signals import Tick
-from pliant.wiring.registry import controllers
+from pliant.wiring.registry import controllers, find_controller
 
 TICKS = 100
 CASES = (("stack", "figure8-hardware"), ("haptic", "floor"), ("polishing", "tables-2-3-4-delayed"))
@@ -85,3 +87,11 @@ def test_parameters_of_another_controller_are_refused_with_the_valid_ones() -> N
     config = merged(study.case("floor"), {"controller": "offset-free-mpc", "control": {"horizn": 3}})
     with pytest.raises(Exception, match=r"unknown key 'horizn'.*did you mean 'horizon'"):
         study.build(config)
+
+
+@pytest.mark.parametrize(("delay", "gain"), [(0.0, 45.0), (6e-3, 0.1 / 7e-3)])
+def test_a_late_loop_regulates_force_more_slowly(delay: float, gain: float) -> None:
+    """At 45 /s and 7 ms the loop oscillates and loses contact."""
+    entry, robot = find_controller("haptic"), Robot.load("leg3")
+    believed = Believed(frames=("foot",), period=1e-3, presses="foot", computation_delay=delay)
+    assert entry.suggest(robot, entry.default, believed).exploration.gain == pytest.approx(gain)

@@ -21,6 +21,8 @@ from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExp
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
+_SLOWER = 0.1  # k_I times the loop's lateness, at most: force is regulated ten times more slowly than the loop answers
+
 
 class HapticConfig(ControllerConfig):
     """Haptic exploration in front of a stack of fractal impedances."""
@@ -53,10 +55,16 @@ def _needs(config: HapticConfig) -> Needs:
 
 
 def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticConfig:
-    """The stack that suits; where phases say when to touch, a frame that should and does not goes and looks."""
+    """The stack that suits; where phases say when to touch, a frame that should and does not goes and looks. In a late
+    loop force is regulated more slowly: k_I is a tenth of 1 / (period and delays) at most."""
     exploration = config.exploration
-    if exploration is not None and any(believed.phases.values()):
-        exploration = exploration.model_copy(update={"seek": True})
+    if exploration is not None:
+        late = believed.period + believed.sensing_delay + believed.computation_delay
+        changes = {
+            "gain": min(exploration.gain, _SLOWER / late),
+            "seek": exploration.seek or any(believed.phases.values()),
+        }
+        exploration = exploration.model_copy(update=changes)
     return config.model_copy(
         update={"impedance": suggest_stack(robot, config.impedance, believed), "exploration": exploration}
     )
