@@ -23,8 +23,8 @@ class Law(StrEnum):
     """Which force an axis gives on the way back to its target."""
 
     CAPPED = "capped"
-    """bounded by F_max; passive for any switching between divergence and convergence in continuous time, kept so when
-    sampled by an account of its energy"""
+    """bounded by F_max; passive for any switching between divergence and convergence in continuous time; sampled, an
+    account of its energy bounds what it draws, to the millijoules of docs/controllers.md"""
     HAPFIC = "hapfic"
     """[HapFIC] eq. 1 as printed; creates energy when the convergence is interrupted"""
     STACK_PRINTED = "stack-printed"

@@ -31,7 +31,7 @@ class TranslationConfig(ControllerConfig):
     )
     force_max: PerAxis = Field(
         default=100.0,
-        description="F_max: the force never exceeds it, however large the error",
+        description="F_max: bound of the commanded force, however large the error; an impact can be harder",
         json_schema_extra={"unit": "N", "minimum": 0.0, "maximum": 300.0},
     )
     range: PerAxis = Field(

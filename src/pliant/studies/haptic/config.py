@@ -55,7 +55,7 @@ class Impedance(Config):
     """The fractal impedance at the foot; x, y, z. Defaults: [HapFIC] sec. III."""
 
     stiffness: Triple = quantity((6000.0, 6000.0, 12000.0), "N/m", "K_0: force per error near the target")
-    force_max: Triple = quantity((150.0, 150.0, 300.0), "N", "F_max: the force of the impedance never exceeds it")
+    force_max: Triple = quantity((150.0, 150.0, 300.0), "N", "F_max: bound of the commanded force, not of an impact")
     range: Triple = quantity(
         (0.025, 0.025, 0.025), "m", "x_b: error at which F_max is reached, and bound of the exploration"
     )
