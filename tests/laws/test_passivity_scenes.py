@@ -157,3 +157,17 @@ def test_a_moving_wall_moves_the_mass_by_no_more_than_itself() -> None:
     """±1 mm at 3 Hz: the mass may follow the wall, and keep off it by what it is pushed ahead."""
     assert random_worlds(with_account(), wall=(1e-3, 20.0)).max() < 3e-3
     assert random_worlds(blend_alone(), wall=(1e-3, 20.0)).max() > 5e-3  # baseline: it swings by itself
+
+
+def noise_of_the_force(attractor: Attractor, noise: float) -> float:
+    """N rms of the stiff axis' force, two masses that press on 10⁴ N/m and 50 N·s/m, the last second of two."""
+    mass, stiffness, damping, target = np.array([1.5, 4.0]), np.full(2, 1e4), np.full(2, 50.0), np.full(2, 0.005)
+    _, force, _ = worlds(
+        STIFF, attractor, 2.0, mass=mass, stiffness=stiffness, damping=damping, target=target, noise=noise
+    )
+    return float(force[1000:].std(axis=0).max())
+
+
+def test_ten_micrometres_of_noise_stay_half_a_newton() -> None:
+    """At 30 µm an axis with an account swings (7 N), the blend alone does not (0.7 N): no claim is made there."""
+    assert noise_of_the_force(with_account(), 1e-5) < 0.5
