@@ -148,6 +148,7 @@ BAD_INPUT = [
     (["run", "--set", "control.tasks.ee.translation.range=0.001"], "range x_b must exceed linear_range x_0"),
     (["run", "--set", "control.tasks.ee.translation.force_max=1"], "force_max must be at least"),
     (["run", "--set", "control.tasks.ee.frame=nose"], "has no frame 'nose'"),
+    (["run", "--set", "control.tasks.ee.frame=universe"], "has no frame 'universe'"),
     (["run", "--out", "broken.urdf/x"], "output folder"),
     (["run", "missing.toml"], "missing.toml does not exist"),
     (["run", "twice.toml"], "is not TOML"),

@@ -6,7 +6,7 @@ import os
 import stat
 from pathlib import Path
 
-from pliant.errors import OutputError
+from pliant.errors import ConfigError, OutputError
 
 
 def read_file(path: str | os.PathLike[str], most: float = float("inf")) -> bytes:
@@ -29,6 +29,19 @@ def read_file(path: str | os.PathLike[str], most: float = float("inf")) -> bytes
         return Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         raise OutputError(f"{path!s} cannot be read: {_why(error)}") from None
+
+
+def read_text(path: str | os.PathLike[str], most: float = float("inf")) -> str:
+    """The same as text; a byte order mark is left out.
+
+    Raises:
+        OutputError: as `read_file`.
+        ConfigError: it is not UTF-8.
+    """
+    try:
+        return read_file(path, most).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{path} is not UTF-8 text (byte {error.start}); save it as UTF-8") from None
 
 
 def _why(error: OSError | ValueError) -> str:

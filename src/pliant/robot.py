@@ -18,6 +18,10 @@ from pliant.robots.tool import with_rod
 from pliant.spatial import Array
 
 
+_WORLD = "universe"
+"""pinocchio's name of what is not part of the robot"""
+
+
 @dataclass(frozen=True)
 class Robot:
     """A robot with 1-degree-of-freedom joints on a fixed base. Immutable: the `with_…` methods return another one.
@@ -96,7 +100,8 @@ class Robot:
 
     @property
     def frame_names(self) -> tuple[str, ...]:
-        return tuple(frame.name for frame in self.model.frames)
+        """Without that of the world, to which nothing of the robot is fixed."""
+        return tuple(frame.name for frame in self.model.frames if frame.name != _WORLD)
 
     @property
     def torque_limit(self) -> Array:
@@ -127,7 +132,7 @@ class Robot:
 
     def frame_id(self, name: str) -> int:
         """Index of a frame. Raises RobotError, with the frames there are, if it does not exist."""
-        if not self.model.existFrame(name):
+        if name == _WORLD or not self.model.existFrame(name):
             raise RobotError(f"robot {self.name!r} has no frame {name!r}; {options(self.frame_names, name)}")
         return int(self.model.getFrameId(name))
 

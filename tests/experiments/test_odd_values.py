@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import random
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,8 +16,12 @@ from pliant.experiments.base import check_windows
 from pliant.experiments.config import assigned, merged
 from pliant.experiments.registry import get_study
 
-ODD = (math.nan, math.inf, -math.inf, -1, 0, 1e300, 10**23, "text")
 CASES = {"haptic": "online", "polishing": "ideal", "stack": "rest-plain"}
+WHOLE = bool(os.environ.get("PLIANT_WHOLE_SEARCH"))
+STEPPED = {"haptic": 1.0, "polishing": 1.0 if WHOLE else 0.02, "stack": 1.0 if WHOLE else 0.02}
+"""share of what is accepted that is wired and stepped: the others take longer to wire than the haptic study; all with
+`PLIANT_WHOLE_SEARCH=1 pytest tests/experiments/test_odd_values.py`"""
+ODD = (math.nan, math.inf, -math.inf, -1, 0, 1e300, 10**23, "text")
 
 
 def _leaves(tree: dict[str, Any], above: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
@@ -36,6 +42,7 @@ def _tree(keys: tuple[str, ...], value: Any) -> dict[str, Any]:
 def test_an_odd_value_anywhere_is_refused_in_a_sentence_or_can_be_stepped(name: str) -> None:
     study = get_study(name)
     config = study.case(CASES[name]).model_copy(update={"duration": 0.02})
+    rng = random.Random(name)
     tried, refused = 0, list[str]()
     for keys, old in _leaves(config.model_dump()):
         for odd in ODD:
@@ -43,7 +50,7 @@ def test_an_odd_value_anywhere_is_refused_in_a_sentence_or_can_be_stepped(name: 
             tried += 1
             try:
                 changed = merged(config, _tree(keys, value))
-                if name != "haptic":  # the quickest to wire stands for them
+                if rng.random() > STEPPED[name]:
                     continue
                 wired = study.build(changed)
                 loop.run(wired.plant, wired.estimator, wired.source, wired.controller, range(2), [], wired.robot)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.errors import ConfigError, PliantError
+from pliant.errors import ConfigError, OutputError, PliantError
 from pliant.references.toolpaths.corners import rounded
 from pliant.references.toolpaths.files import read_path
 from pliant.references.toolpaths.pace import pace
@@ -182,12 +182,12 @@ def test_a_bad_path_file_is_one_sentence(tmp_path: Path, name: str, text: str, m
 
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="does not exist"):
+    with pytest.raises(OutputError, match="No such file"):
         read_path(tmp_path / "none.csv")
     (tmp_path / "latin.csv").write_bytes(b"x,y\n0,0\n\xe9,1\n")
     with pytest.raises(ConfigError, match="is not UTF-8 text"):
         read_path(tmp_path / "latin.csv")
-    with pytest.raises(ConfigError, match="does not exist or is not a file"):
+    with pytest.raises(OutputError, match="not a regular file"):
         read_path(tmp_path)
 
 

@@ -24,7 +24,7 @@ def print_robot(console: Console, source: str) -> None:
         f"home       {robot.home_from}",
         f"gravity    {gravity} m/s², in the robot's base",
         f"mass       {mass:.3f} kg that move",
-        f"frames     {', '.join(robot.frame_names[1:])}",
+        f"frames     {', '.join(robot.frame_names)}",
     ]
     for line in lines:
         console.print(line, markup=False, highlight=False, soft_wrap=True)

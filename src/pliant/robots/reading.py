@@ -6,10 +6,12 @@ from collections.abc import Collection
 from pathlib import Path
 from xml.etree import ElementTree
 
-from pliant.errors import RobotError
+from pliant.errors import OutputError, RobotError
+from pliant.files import read_file
 from pliant.robots.description import Description
 from pliant.robots.urdf import read_urdf
 
+_LARGEST = 1e8  # bytes
 _REMEDIES = {
     "sdf": "an SDF; convert it to a URDF or an MJCF first",
     "html": "a web page; download the file itself (the page's 'raw' link)",
@@ -44,12 +46,13 @@ def read_description(path: Path, locked: Collection[str]) -> Description:
 
 def _parse(path: Path) -> ElementTree.Element:
     try:
-        if path.stat().st_size == 0:
+        content = read_file(path, _LARGEST)
+        if not content:
             raise RobotError(f"{path} is empty; a robot file is a URDF or an MJCF")
-        return ElementTree.parse(path).getroot()
+        return ElementTree.fromstring(content)
     except ElementTree.ParseError as error:
         raise RobotError(f"{path} is not XML ({error}); a robot file is a URDF or an MJCF") from error
     except (UnicodeError, ValueError, LookupError) as error:
         raise RobotError(f"{path} is not readable text ({error}); save it as UTF-8") from error
-    except OSError as error:
-        raise RobotError(f"{path} cannot be read: {error.strerror}") from error
+    except OutputError as error:
+        raise RobotError(str(error)) from None

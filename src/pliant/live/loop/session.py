@@ -104,7 +104,7 @@ class Session:
                 config=self.config,
                 looks=looks_of(physics.model, robot.n),
                 bodies=int(physics.model.nbody),
-                frames=_pushable(robot.frame_names),
+                frames=robot.frame_names,
                 columns=columns.names,
                 period=self.plant.period,
                 scene=physics.scene,
@@ -192,7 +192,3 @@ class Session:
             return
         if path is not None:
             self._send(Note("recorded", str(path)))
-
-
-def _pushable(frames: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(frame for frame in frames if frame != "universe")

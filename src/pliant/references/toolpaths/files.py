@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pliant.errors import ConfigError, OutputError, options
+from pliant.errors import ConfigError, options
+from pliant.files import read_text
 from pliant.spatial import Array
 
 _COLUMNS = ("time", "x", "y", "z", "force", "speed")
@@ -54,7 +55,7 @@ def read_path(file: Path, unit: str = "m") -> PathPoints:
     """
     if unit not in _LENGTHS:
         raise ConfigError(f"unknown unit {unit!r} of a path file; {options(_LENGTHS, unit)}")
-    text = _text(file)
+    text = read_text(file, _LARGEST)
     if file.suffix.lower() == ".csv":
         found = _csv(file, text, _UNITS[unit])
     elif file.suffix.lower() in (".apt", ".cl", ".cls", ".ncl", ".aptsource"):
@@ -64,19 +65,6 @@ def read_path(file: Path, unit: str = "m") -> PathPoints:
     if len(found.points) < 2:
         raise ConfigError(f"{file} must hold at least two points, got {len(found.points)}")
     return found
-
-
-def _text(file: Path) -> str:
-    try:
-        if not file.is_file():
-            raise ConfigError(f"path file {file} does not exist or is not a file")
-        if file.stat().st_size > _LARGEST:
-            raise ConfigError(f"path file {file} is larger than {_LARGEST:.0e} bytes: thin it out")
-        return file.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise OutputError(f"path file {file} cannot be read: {error.strerror or error}") from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"path file {file} is not UTF-8 text (byte {error.start}); save it as UTF-8") from None
 
 
 def _csv(file: Path, text: str, length: float) -> PathPoints:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from pliant.errors import ConfigError, OutputError
+from pliant.errors import ConfigError
+from pliant.files import read_file, read_text
 from pliant.references.trajectories.rotation import QuaternionSpline, Turning
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.trajectory import Trajectory
 from pliant.spatial import Array
 
 COLUMNS = ("time", "x", "y", "z")
+_LARGEST = 1e9  # bytes
 QUATERNION = ("qw", "qx", "qy", "qz")
 
 
@@ -66,14 +71,12 @@ def _read_columns(file: Path) -> dict[str, Array]:
         raise ConfigError(f"a sampled trajectory is a .csv or .npz file, got {file}")
     try:
         if file.suffix.lower() == ".npz":
-            with np.load(file) as archive:
+            with np.load(io.BytesIO(read_file(file, _LARGEST))) as archive:
                 return _equal_lengths(
                     file, {name: np.asarray(archive[name], dtype=np.float64) for name in archive.files}
                 )
-        return _parse_csv(file, file.read_text())
-    except OSError as error:
-        raise OutputError(f"{file} cannot be read: {error.strerror or error}") from error
-    except (ValueError, UnicodeDecodeError) as error:
+        return _parse_csv(file, read_text(file, _LARGEST))
+    except (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError) as error:
         raise ConfigError(f"{file} is not a sampled trajectory: {error}") from error
 
 
