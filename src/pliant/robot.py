@@ -17,7 +17,6 @@ from pliant.robots.tool import Tool as Tool
 from pliant.robots.tool import with_rod
 from pliant.spatial import Array
 
-
 _WORLD = "universe"
 """pinocchio's name of what is not part of the robot"""
 

@@ -41,7 +41,7 @@ def _tree(keys: tuple[str, ...], value: Any) -> dict[str, Any]:
 @pytest.mark.parametrize("name", CASES)
 def test_an_odd_value_anywhere_is_refused_in_a_sentence_or_can_be_stepped(name: str) -> None:
     study = get_study(name)
-    config = study.case(CASES[name]).model_copy(update={"duration": 0.02})
+    config = merged(study.case(CASES[name]), {})  # which is possible: only the odd value can be refused
     rng = random.Random(name)
     tried, refused = 0, list[str]()
     for keys, old in _leaves(config.model_dump()):
@@ -57,7 +57,7 @@ def test_an_odd_value_anywhere_is_refused_in_a_sentence_or_can_be_stepped(name: 
             except PliantError as error:
                 refused.append(f"{keys} {odd!r}: {error}")
     assert tried >= 200
-    assert len(refused) > tried // 2
+    assert tried // 4 < len(refused) < tried
     assert [text for text in refused if len(text.splitlines()) > 1] == []
 
 
