@@ -23,9 +23,8 @@ MODULES = sorted(
 
 def lint(folder: Path) -> subprocess.CompletedProcess[str]:
     call = "from importlinter.cli import lint_imports_command; lint_imports_command()"
-    return subprocess.run(
-        [sys.executable, "-c", call, "--no-cache"], cwd=folder, capture_output=True, text=True, check=False
-    )
+    command = [sys.executable, "-c", call, "--no-cache"]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
 
 
 def test_imports_go_down_only() -> None:

@@ -21,7 +21,7 @@ def test_what_it_writes_passes_its_own_test(tmp_path: Path) -> None:
     assert done.exit_code == 0
     assert "MyController" not in file.read_text()
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_soft.py"]
-    tested = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    tested = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
     assert tested.returncode == 0, tested.stdout
     assert "2 passed" in tested.stdout
     again = runner.invoke(app, ["new", "controller", "SoftSpring", "-o", str(file)])

@@ -115,6 +115,7 @@ def test_environment_variable_forces_the_instruction_set(name: str, code: int) -
         capture_output=True,
         text=True,
         check=False,
+        timeout=120,
     )
     assert run.returncode == code
     if code:

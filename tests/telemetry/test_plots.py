@@ -86,7 +86,7 @@ def test_no_global_state_of_matplotlib_is_touched() -> None:
         "assert 'matplotlib.pyplot' not in sys.modules\nassert matplotlib.rcParams.copy() == before\n"
     )
     environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, env=environment)
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, env=environment, timeout=120)
 
 
 def test_fewer_points_keep_every_spike() -> None:

@@ -231,7 +231,7 @@ def test_a_killed_process_leaves_whole_blocks(tmp_path: Path) -> None:
     )
     path = tmp_path / "killed.mcap"
     done = subprocess.run(
-        [sys.executable, "-c", code, str(Path(__file__).parent), str(path)], check=False, env=os.environ
+        [sys.executable, "-c", code, str(Path(__file__).parent), str(path)], check=False, env=os.environ, timeout=120
     )
     assert done.returncode == 9
     log = Log.open(path)
@@ -248,7 +248,8 @@ def test_a_recorder_that_nobody_closed_is_closed_at_exit(tmp_path: Path) -> None
         "for k in range(20): recorder(make_tick(k))\n"
     )
     path = tmp_path / "open.mcap"
-    subprocess.run([sys.executable, "-c", code, str(Path(__file__).parent), str(path)], check=True, env=os.environ)
+    command = [sys.executable, "-c", code, str(Path(__file__).parent), str(path)]
+    subprocess.run(command, check=True, env=os.environ, timeout=120)
     log = Log.open(path)
     assert not log.truncated
     assert log["measurement/q"].shape[0] == 20

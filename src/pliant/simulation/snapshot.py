@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ import numpy as np
 from pliant.spatial import Array
 
 _CHILD = Path(__file__).with_name("_render_child.py")
+_PATIENCE = 120.0  # s for one platform; a driver that never answers counts as none
 
 
 @dataclass(frozen=True)
@@ -89,11 +91,13 @@ def render(
         np.savez(base / "job.npz", **_pack(snapshots, camera, width, height))
         for platform in ("egl", "osmesa"):
             environment = os.environ | {"MUJOCO_GL": platform, "PYOPENGL_PLATFORM": platform}
-            child = subprocess.run(
-                [sys.executable, str(_CHILD), str(base)], env=environment, cwd=folder, capture_output=True, check=False
-            )
-            if child.returncode == 0:
-                return list(np.load(base / "pixels.npy"))
+            command = [sys.executable, str(_CHILD), str(base)]
+            with suppress(subprocess.TimeoutExpired):
+                child = subprocess.run(
+                    command, env=environment, cwd=folder, capture_output=True, check=False, timeout=_PATIENCE
+                )
+                if child.returncode == 0:
+                    return list(np.load(base / "pixels.npy"))
     return None
 
 
