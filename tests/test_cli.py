@@ -11,13 +11,14 @@ import time
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 from pliant.cli.app import app
 from pliant.telemetry import Log
 
 PLIANT = [sys.executable, "-c", "from pliant.cli import main; main()"]
-CLI = CliRunner(env={"COLUMNS": "160"})
+CLI = CliRunner()
 SHORT = ["--set", "duration=3.4", "--set", "path.ramp=1.0"]
 
 
@@ -149,6 +150,12 @@ BAD_INPUT = [
     (["run", "--set", "control.tasks.ee.translation.force_max=1"], "force_max must be at least"),
     (["run", "--set", "control.tasks.ee.frame=nose"], "has no frame 'nose'"),
     (["run", "--set", "control.tasks.ee.frame=universe"], "has no frame 'universe'"),
+    (["run", "polishing", "--set", "pushes.frame=universe"], "has no frame 'universe'"),
+    (["run", "polishing", "--set", "physics_step=1e-7", "--set", "duration=4"], "within a factor of 1000"),
+    (["run", "polishing", "--set", "estimation.tare=odd"], "tare"),
+    (["doctor", "iiwa14", "--locked", "A9=0"], "no joint 'A9' to lock"),
+    (["doctor", "iiwa14", "--locked", "A7"], "JOINT=ANGLE"),
+    (["doctor", "--locked", "A7=0"], "--locked is of a robot"),
     (["run", "--out", "broken.urdf/x"], "output folder"),
     (["run", "missing.toml"], "missing.toml does not exist"),
     (["run", "twice.toml"], "is not TOML"),
@@ -188,13 +195,18 @@ def test_bad_input_gets_one_sentence_and_exit_code_2(
     assert "Traceback" not in captured.err
 
 
-def test_doctor_and_list_say_what_there_is() -> None:
+def test_doctor_and_list_say_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pliant.cli.app._out", Console(width=160))
     doctor = CLI.invoke(app, ["doctor"])
     assert doctor.exit_code == 0, doctor.output
     assert "mujoco" in doctor.stdout
     listed = CLI.invoke(app, ["list"])
     for name in ("lwr4", "iiwa14", "leg3", "operational-space", "figure8-wall"):
         assert name in listed.stdout
+
+
+def test_doctor_locks_joints_of_a_robot() -> None:
+    assert "iiwa14, 6 joints" in CLI.invoke(app, ["doctor", "iiwa14", "--locked", "A7=0.1"]).stdout
 
 
 def test_doctor_warns_of_an_unsafe_configuration(tmp_path: Path) -> None:

@@ -67,6 +67,8 @@ ENDLESS = [
     ("stack", {"period": 1e-12}),
     ("haptic", {"physics_step": 1e-300}),
     ("polishing", {"physics_step": 1e-9}),
+    ("polishing", {"physics_step": 1e-7, "duration": 3.5}),
+    ("stack", {"physics_step": 1e-9, "duration": 0.05}),
     ("stack", {"wall": {"friction": 1e300}}),
     ("stack", {"pushes": {"duration": [0, 0], "gap": [0, 0]}}),
     ("stack", {"retuning": {"factor": [0, 2]}}),

@@ -93,15 +93,21 @@ def test_the_wall_stands_across_the_placed_path() -> None:
 
 def test_locked_joints_are_replaced_as_a_whole_or_emptied() -> None:
     config = next(iter(POLISHING.values()))
-    assert config.locked == {"A7": 0.0}
+    assert config.locked is None
     assert merged(config, parse_assignments(["locked={}"])).locked == {}
     assert merged(config, parse_assignments(["locked={A5=0.1}"])).locked == {"A5": 0.1}
     assert merged(config, parse_assignments(["locked=none"])).locked is None
-    assert merged(config, parse_assignments(["table.height=0.1"])).locked == {"A7": 0.0}
     nested = merged(
         CASES["figure8-wall"], parse_assignments(["wall.x=0.05", "control.tasks.ee.translation.range=0.05"])
     )
     assert nested.wall is not None
     assert nested.wall.stiffness == 1e4  # the rest of a table stays
     with pytest.raises(PliantError, match=r"no joint 'A7' to lock.*locked=\{\} locks none"):
-        merged(config, {"robot": "panda"}).robot_model()
+        merged(config, {"robot": "panda", "locked": {"A7": 0.0}}).robot_model()
+
+
+@pytest.mark.parametrize(("robot", "joints"), [("iiwa14", 6), ("iiwa7", 7), ("panda", 7), ("lwr4", 7), ("ur5e", 6)])
+def test_only_the_robot_of_the_paper_has_a_joint_locked(robot: str, joints: int) -> None:
+    config = merged(next(iter(POLISHING.values())), {"robot": robot})
+    assert config.robot_model().n == joints
+    assert merged(config, {"locked": {}}).robot_model().n >= joints

@@ -253,6 +253,10 @@ def doctor(
     robot: Annotated[
         str | None, typer.Argument(metavar="[ROBOT|FILE]", help="A robot: what was understood of it.")
     ] = None,
+    locked: Annotated[
+        list[str] | None,
+        typer.Option(metavar="JOINT=ANGLE", help="A joint of ROBOT that is fixed (rad or m); can be repeated."),
+    ] = None,
     config: Annotated[
         Path | None, typer.Option("--config", metavar="CONFIG.toml", help="A configuration to check for unsafe gains.")
     ] = None,
@@ -261,8 +265,10 @@ def doctor(
     from pliant.cli.doctor import doctor_command
     from pliant.cli.doctor_robot import print_robot
 
+    if robot is None and locked:
+        raise ConfigError("--locked is of a robot: pliant doctor ROBOT --locked JOINT=ANGLE")
     if robot is not None:
-        print_robot(_out, robot)
+        print_robot(_out, robot, locked or [])
     if robot is None or config is not None:
         doctor_command(_out, config)
 

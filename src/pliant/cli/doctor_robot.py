@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from pliant.errors import ConfigError
 from pliant.robot import Robot
 
 
-def print_robot(console: Console, source: str) -> None:
+def print_robot(console: Console, source: str, locked: Sequence[str] = ()) -> None:
     """Prints joints, limits, home, masses, gravity, frames and notes of a robot.
+
+    Args:
+        console: where to.
+        source: name or file.
+        locked: `joint=angle` (rad or m) of joints that are fixed; none: those that the catalogue locks.
 
     Raises:
         RobotError: it cannot be loaded.
+        ConfigError: `locked` names no joint of it, or no angle.
     """
-    robot = Robot.load(source)
+    robot = Robot.load(source, locked=dict(map(_lock, locked)) or None)
     console.print(_joints(robot))
     gravity = np.round(np.array(robot.model.gravity.linear), 4).tolist()
     mass = sum(float(inertia.mass) for inertia in list(robot.model.inertias)[1:])
@@ -32,6 +41,14 @@ def print_robot(console: Console, source: str) -> None:
         console.print(f"note: {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
     for fault in robot.faults:
         console.print(f"cannot be simulated: {fault}", style="red", markup=False, highlight=False, soft_wrap=True)
+
+
+def _lock(text: str) -> tuple[str, float]:
+    joint, _, angle = text.rpartition("=")
+    try:
+        return joint, float(angle)
+    except ValueError:
+        raise ConfigError(f"--locked takes JOINT=ANGLE in rad or m, e.g. finger=0, got {text!r}") from None
 
 
 def _joints(robot: Robot) -> Table:

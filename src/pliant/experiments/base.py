@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 MOST_STEPS = 10**8
 """of a run, of the control and of the physics"""
 
+MOST_STEPS_PER_PERIOD = 1000
+"""of the physics: between two commands; a run with more of them does not end while anyone waits"""
+
 
 class CaseConfig(Config):
     """What every case of every study has."""
@@ -82,6 +85,11 @@ class CaseConfig(Config):
                 raise ValueError(
                     f"a run takes 1 to {MOST_STEPS:.0e} steps; duration / {name} = {self.duration:g} s / {step:g} s"
                 )
+        if self.clock and max(self.clock.values()) > MOST_STEPS_PER_PERIOD * min(self.clock.values()) * (1.0 + 1e-9):
+            steps = ", ".join(f"{name} {step:g} s" for name, step in self.clock.items())
+            raise ValueError(
+                f"steps of a run are within a factor of {MOST_STEPS_PER_PERIOD} of each other, got {steps}"
+            )
         return self
 
 

@@ -51,10 +51,17 @@ def is_available(entry: CatalogueEntry) -> bool:
 
 
 def _locate_file(source: str) -> Path:
-    path = Path(source).expanduser()
-    if path.is_file():
+    try:
+        path = Path(source).expanduser()
+        found, folder, other = path.is_file(), path.is_dir(), path.exists()
+    except (OSError, RuntimeError) as error:  # RuntimeError: a user who does not exist
+        why = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise RobotError(f"robot {source[:80]!r} cannot be read: {why}; {options(CATALOGUE)}") from None
+    if found:
         return path
-    if path.is_dir():
+    if other and not folder:
+        raise RobotError(f"{source} is not a regular file; a robot is a URDF or MJCF file; {options(CATALOGUE)}")
+    if folder:
         raise RobotError(
             f"{source} is a folder; a robot is a URDF or MJCF file, or one of the names; {options(CATALOGUE)}"
         )

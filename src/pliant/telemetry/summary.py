@@ -13,9 +13,11 @@ import numpy as np
 
 import pliant
 from pliant.errors import OutputError
+from pliant.files import read_file
 from pliant.telemetry.output import write_text
 
 FILE = "summary.json"
+_LARGEST = 1e8  # bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,12 +109,10 @@ class Summary:
         """
         path = path / FILE if path.is_dir() else path
         try:
-            content = json.loads(path.read_text(encoding="utf-8"))
+            content = json.loads(read_file(path, _LARGEST).decode("utf-8-sig"))
             cases = tuple(_case_from_json(entry) for entry in content["cases"])
             return Summary(content["study"], content["seed"], cases, content["version"])
-        except OSError as error:
-            raise OutputError(f"{path} cannot be read: {error.strerror}") from error
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise OutputError(f"{path} is not a summary of a pliant study ({type(error).__name__}: {error})") from error
 
 

@@ -14,6 +14,7 @@ from pliant.estimation import (
     FitConfig,
     JointStateFilter,
     MomentumObserver,
+    Tare,
     WrenchEstimator,
 )
 from pliant.interfaces import Estimator, Needs
@@ -38,6 +39,8 @@ class Sensing:
     """s, of the joint state filter; 0: none; None: 0.3 s for controllers that want calm positions"""
     observer_gain: float = 30.0
     """rad/s, of the momentum observer"""
+    tare: Tare | None = None
+    """what to do at the start about what the force sensor carries and nobody named; None: nothing"""
 
 
 def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensing) -> Estimator[Any]:
@@ -48,7 +51,9 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensi
     """
     gain, period = sensing.velocity_gain, believed.period
     normal = (0.0, 0.0, 1.0) if believed.surface is None else believed.surface
-    felt: Estimator[Any] = WrenchEstimator(robot, velocity_gain=gain) if sensing.felt else DirectEstimator(gain)
+    felt: Estimator[Any] = (
+        WrenchEstimator(robot, velocity_gain=gain, tare=sensing.tare) if sensing.felt else DirectEstimator(gain)
+    )
     if sensing.wrench_cutoff is not None:
         felt = FilteredEstimator(felt, wrench=Butterworth(sensing.wrench_cutoff, period))
     memory = sensing.joint_memory

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from pliant.errors import ConfigError
+from pliant.estimation import Tare
 from pliant.experiments.model_error import with_mass_error
 from pliant.interfaces import Plant
 from pliant.references.postures.inverse_kinematics import Target, joint_box
@@ -41,6 +42,7 @@ def build(config: PolishingConfig) -> Experiment:
             wrench_cutoff=settings.wrench_cutoff,
             joint_memory=settings.joint_memory,
             observer_gain=settings.observer_gain,
+            tare=None if settings.tare is None else Tare(kind=settings.tare),
         ),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,

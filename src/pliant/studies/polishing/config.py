@@ -146,6 +146,11 @@ class Estimation(Config):
         description="of a Butterworth filter of the contact wrench; none: unfiltered",
         json_schema_extra={"unit": "Hz"},
     )
+    tare: Literal["weight", "bias"] | None = Field(
+        default=None,
+        description="what the force sensor reads in the first 20 ms, beyond what is known, counts as an unknown weight"
+        " or as an offset; none: it counts as contact",
+    )
 
 
 class Pushes(Config):
@@ -158,6 +163,10 @@ class Pushes(Config):
     start: float = Field(default=4.0, ge=0.0, le=1e4, description="of the first push", json_schema_extra={"unit": "s"})
 
 
+LOCKED: Mapping[str, Mapping[str, float]] = {"iiwa14": {"A7": 0.0}}
+"""robot → joint → rad; what the paper holds still"""
+
+
 class PolishingConfig(CaseConfig):
     """One run of the polishing task."""
 
@@ -166,8 +175,9 @@ class PolishingConfig(CaseConfig):
         default="iiwa14", description="catalogue name, or path of a URDF or MJCF file with a frame 'flange'"
     )
     locked: dict[str, float] | None = Field(
-        default={"A7": 0.0},
-        description="joint → angle at which it is fixed, replaced as a whole; {} locks none",
+        default=None,
+        description="joint → angle at which it is fixed, replaced as a whole; none: A7 of the iiwa14 as in the paper,"
+        " of another robot what the catalogue locks; {}: none",
         json_schema_extra={"unit": "rad"},
     )
     duration: float = Field(default=10.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
@@ -254,7 +264,8 @@ class PolishingConfig(CaseConfig):
         """The arm with its tool; the real tool may be heavier than the known one."""
         tool = Tool(frame=FRAME)
         heavier = Tool(frame=FRAME, mass=tool.mass + unknown_mass)
-        return Robot.load(self.robot, locked=self.locked, tool=heavier).with_contact(FRAME, BALL_RADIUS)
+        locked = LOCKED.get(self.robot) if self.locked is None else self.locked
+        return Robot.load(self.robot, locked=locked, tool=heavier).with_contact(FRAME, BALL_RADIUS)
 
     def parameters(self) -> ControllerConfig:
         """The controller's parameters: its defaults, those of this study, what is known of the robot's delays, then
