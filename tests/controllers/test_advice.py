@@ -25,8 +25,14 @@ def test_the_sampling_rule_tells_a_mass_that_settles_from_one_that_does_not(omeg
     tuning = tuning_of(omega_T, mass, period)
     rules = {advice.rule for advice in advise(tuning, period, mass, speed=0.0)}
     assert rules == (set() if safe else {"sampling"})
-    run = run_mass(ForceProfile.of(tuning), mass=mass, start=0.005, seconds=2.0)
+    run = run_mass(ForceProfile.of(tuning), mass=mass, start=0.005, seconds=2.0, account=False)
     assert (np.abs(run.error[-200:]).max() < 2e-4) == safe
+
+
+@pytest.mark.parametrize(("omega_T", "settles"), [(0.35, True), (0.8, True), (1.2, False)])
+def test_with_the_account_it_settles_beyond_the_rule_but_not_far(omega_T: float, settles: bool) -> None:
+    run = run_mass(ForceProfile.of(tuning_of(omega_T, 1.5, 1e-3)), mass=1.5, start=0.005, seconds=2.0)
+    assert (np.abs(run.error[-200:]).max() < 2e-4) == settles
 
 
 def test_the_safe_value_is_the_border() -> None:

@@ -144,7 +144,11 @@ def kill_and_watch(server: PageServer, waits: list[float]) -> None:
         max_size=None,
     ) as page:
         next(frames(page))
-        [loop] = [child for child in multiprocessing.active_children() if child.name == "pliant-loop"]
+        end = time.monotonic() + 60.0
+        while not (loops := [child for child in multiprocessing.active_children() if child.name == "pliant-loop"]):
+            assert time.monotonic() < end, "no loop"
+            time.sleep(0.02)
+        [loop] = loops
         before = stretch()
         loop.kill()
         killed = time.monotonic()
