@@ -127,6 +127,7 @@ def test_ctrl_c_keeps_what_was_recorded(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert "Traceback" not in errors
     assert "interrupted" in errors
+    assert (tmp_path / "out" / "config.toml").exists()  # so that it can be made again
     (path,) = (tmp_path / "out").glob("*.mcap")
     log = Log.open(path)
     assert not log.truncated
@@ -155,6 +156,7 @@ BAD_INPUT = [
     (["run", "polishing", "--set", "estimation.tare=odd"], "tare"),
     (["doctor", "iiwa14", "--locked", "A9=0"], "no joint 'A9' to lock"),
     (["doctor", "iiwa14", "--locked", "A7"], "JOINT=ANGLE"),
+    (["doctor", "iiwa14", "--locked", "A7=nan"], "finite"),
     (["doctor", "--locked", "A7=0"], "--locked is of a robot"),
     (["run", "--out", "broken.urdf/x"], "output folder"),
     (["run", "missing.toml"], "missing.toml does not exist"),
@@ -203,6 +205,15 @@ def test_doctor_and_list_say_what_there_is(monkeypatch: pytest.MonkeyPatch) -> N
     listed = CLI.invoke(app, ["list"])
     for name in ("lwr4", "iiwa14", "leg3", "operational-space", "figure8-wall"):
         assert name in listed.stdout
+
+
+def test_what_only_lists_does_not_wait_for_figures_and_solvers() -> None:
+    program = "import sys; from pliant.cli.listing import list_command; from rich.console import Console"
+    program += "; list_command(Console(), None); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True)
+    loaded = done.stdout.splitlines()[-1].split()
+    assert "pliant.cli.listing" in loaded
+    assert {"matplotlib", "mink", "qpsolvers"}.isdisjoint(loaded)
 
 
 def test_doctor_locks_joints_of_a_robot() -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import random
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pliant.errors import PliantError
@@ -44,9 +46,15 @@ MJCF = """<mujoco><compiler angle="radian"/><worldbody><body name="a"><joint nam
 <actuator><motor joint="j" forcerange="-9 9"/><motor joint="k" forcerange="-9 9"/></actuator></mujoco>"""
 
 
-def damaged(text: str, rng: random.Random) -> bytes:
+def samples() -> bytes:
+    stream = io.BytesIO()
+    time = np.linspace(0.0, 1.0, 8)
+    np.savez_compressed(stream, time=time, x=0.1 * time, y=0.0 * time, z=0.3 + 0.0 * time)
+    return stream.getvalue()
+
+
+def damaged(data: bytes, rng: random.Random) -> bytes:
     """One to three of: a byte changed, a piece lost, doubled, put elsewhere, or something odd put in."""
-    data = text.encode()
     for _ in range(rng.randint(1, 3)):
         at, length = rng.randrange(len(data)), rng.choice([1, 3, 20, 200])
         piece = data[at : at + length]
@@ -74,13 +82,14 @@ def whole(study: str, folder: Path) -> str:
     return write_config(get_study(study), config, folder).read_text()
 
 
-KINDS: dict[str, tuple[str, Callable[[Path], str], Callable[[Path], object]]] = {
+KINDS: dict[str, tuple[str, Callable[[Path], str | bytes], Callable[[Path], object]]] = {
     "task": (".toml", lambda folder: (Path(__file__).parents[2] / TASK).read_text(), load_run),
     "stack": (".toml", lambda folder: whole("stack", folder), load_run),
     "haptic": (".toml", lambda folder: whole("haptic", folder), load_run),
     "polishing": (".toml", lambda folder: whole("polishing", folder), load_run),
     "path": (".csv", lambda folder: CSV, lambda file: read_path(file, "m")),
     "samples": (".csv", lambda folder: SAMPLED, read_motion),
+    "arrays": (".npz", lambda folder: samples(), read_motion),
     "urdf": (".urdf", lambda folder: (Path(__file__).parents[2] / LEG).read_text(), Robot.load),
     "mjcf": (".xml", lambda folder: MJCF, Robot.load),
 }
@@ -91,13 +100,14 @@ TASK, LEG = "src/pliant/tasks/catalogue/wipe.toml", "src/pliant/robots/leg3.urdf
 @pytest.mark.filterwarnings("ignore")  # what is odd but possible is warned of
 def test_a_damaged_file_is_read_or_refused_in_one_sentence(kind: str, tmp_path: Path) -> None:
     suffix, content, load = KINDS[kind]
-    text = content(tmp_path)
-    (tmp_path / f"whole{suffix}").write_text(text)
+    made = content(tmp_path)
+    data = made if isinstance(made, bytes) else made.encode()
+    (tmp_path / f"whole{suffix}").write_bytes(data)
     load(tmp_path / f"whole{suffix}")
     refused: list[str] = []
     for seed in range(SEEDS):
         file = tmp_path / f"{seed}{suffix}"
-        file.write_bytes(damaged(text, random.Random(f"{kind} {seed}")))
+        file.write_bytes(damaged(data, random.Random(f"{kind} {seed}")))
         try:
             load(file)
         except PliantError as error:

@@ -187,6 +187,9 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "latin.csv").write_bytes(b"x,y\n0,0\n\xe9,1\n")
     with pytest.raises(ConfigError, match="is not UTF-8 text"):
         read_path(tmp_path / "latin.csv")
+    (tmp_path / "endless.csv").write_text('x,y\n0,0\n"' + "1" * 200_000)
+    with pytest.raises(ConfigError, match="is not CSV"):
+        read_path(tmp_path / "endless.csv")
     with pytest.raises(OutputError, match="not a regular file"):
         read_path(tmp_path)
 

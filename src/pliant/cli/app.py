@@ -126,20 +126,11 @@ def study(
     from pliant.cli.study import resume_command, study_command
     from pliant.experiments.results import Request
 
-    rest = {"--case": case, "--seeds": seeds, "--logs": logs, "--metric": metric}
+    rest = {"--seeds": seeds, "--logs": logs, "--metric": metric}
     if tune is not None:
         from pliant.cli.tune import tune_command
 
-        _refuse(
-            "--tune",
-            {
-                "--seeds": seeds,
-                "--logs": logs,
-                "--resume": resume,
-                "--metric": metric,
-                "more than one --case": (case or [])[1:],
-            },
-        )
+        _refuse("--tune", rest | {"--resume": resume, "more than one --case": (case or [])[1:]})
         where = case[0] if case else None
         tune_command(
             _out, _err, name or "stack", tune, where, trials or 64, seed or 0, set_ or [], out, jobs, scheduler
@@ -148,7 +139,7 @@ def study(
     if trials is not None or seed is not None:
         raise ConfigError("--trials and --seed belong to --tune CONTROLLER, which is missing")
     if resume is not None:
-        _refuse("--resume", rest | {"--set": set_, "--out": out})
+        _refuse("--resume", rest | {"--case": case, "--set": set_, "--out": out})
         resume_command(_out, _err, resume, name, jobs, scheduler)
         return
     own = (f"own_metrics={json.dumps(metric)}",) if metric else ()

@@ -46,6 +46,7 @@ def run_command(
     for note in experiment.robot.notes:
         complain.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
     _warn(complain, experiment.warnings)
+    again = write_config(study, config, folder)  # before the run: one that is broken off can be made again
     with (
         _page(console, complain, study, config, experiment, folder, live) as more,
         progress_bar(complain, f"{study.name} {config.case} · {config.controller}") as progress,
@@ -53,7 +54,6 @@ def run_command(
         result = run_case(study, config, folder, progress=progress, figures=figures, **more)
     _warn(complain, result.warnings[len(experiment.warnings) :])
     summary = save_summary(study, [result], folder)
-    again = write_config(study, config, folder)
     if result.failure is not None:
         if result.metrics:  # it reached its end, and its numbers may tell why it is none the less a failure
             print_results(console, study, [result])

@@ -89,13 +89,7 @@ class Stack(Controller[StackState]):
             ConfigError: no task, two tasks of one label, or a period that is not above zero.
             RobotError: a frame that the robot does not have.
         """
-        if not (math.isfinite(period) and period > 0.0):
-            raise ConfigError(f"the control period must be finite and above zero, got {period} s")
-        if not (math.isfinite(joint_damping) and joint_damping >= 0.0):
-            raise ConfigError(f"joint_damping must be finite and not negative, got {joint_damping}")
-        labels = [task.label for task in tasks]
-        if not tasks or len(set(labels)) != len(labels):
-            raise ConfigError(f"a stack needs one or more tasks with different labels, got {labels}")
+        _check(tasks, period, joint_damping)
         self.robot = robot
         self.tasks = tuple(tasks)
         self.period = period
@@ -240,6 +234,16 @@ def _target(reference: Reference, place: int, frame: str) -> TaskReference:
         if task.frame == frame:
             return task
     raise ConfigError(f"the reference has no task for frame {frame!r}; {options([t.frame for t in tasks], frame)}")
+
+
+def _check(tasks: Sequence[FrameTask], period: float, joint_damping: float) -> None:
+    if not (math.isfinite(period) and period > 0.0):
+        raise ConfigError(f"the control period must be finite and above zero, got {period} s")
+    if not (math.isfinite(joint_damping) and joint_damping >= 0.0):
+        raise ConfigError(f"joint_damping must be finite and not negative, got {joint_damping}")
+    labels = [task.label for task in tasks]
+    if not tasks or len(set(labels)) != len(labels):
+        raise ConfigError(f"a stack needs one or more tasks with different labels, got {labels}")
 
 
 def _moves(robot: Robot, frame: int) -> list[bool]:

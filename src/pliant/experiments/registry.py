@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Mapping
 from typing import Any
 
 from pliant.errors import ConfigError, options
-from pliant.experiments.base import Study
+from pliant.experiments.base import CaseConfig, Study
+from pliant.experiments.config import validated
 from pliant.tasks.files import catalogue
 
 _MODULES = {
@@ -15,10 +17,25 @@ _MODULES = {
     "haptic": "pliant.studies.haptic",
 }
 """name → module with a `STUDY`; imported when it is asked for"""
+_TASKS = "pliant.studies.task.study"
+"""module of the studies that task files are"""
 
 
 def study_names() -> list[str]:
     return list(_MODULES)
+
+
+def run_of(name: str, values: Mapping[str, Any]) -> tuple[Study[Any], CaseConfig]:
+    """A study, or a task whose file need not be there any more, and one of its runs from all of its values.
+
+    Raises:
+        ConfigError: a value that is missing, unknown or breaks a rule.
+    """
+    if name in _MODULES:
+        study = get_study(name)
+        return study, validated(type(next(iter(study.cases.values()))), values)
+    task: tuple[Study[Any], CaseConfig] = importlib.import_module(_TASKS).whole(name, values)
+    return task
 
 
 def get_study(name: str) -> Study[Any]:
@@ -30,7 +47,7 @@ def get_study(name: str) -> Study[Any]:
     if name not in _MODULES:
         if not name.endswith(".toml") and name not in catalogue():
             raise ConfigError(f"no study or task named {name!r}; {options([*_MODULES, *catalogue()], name)}")
-        task_study: Study[Any] = importlib.import_module("pliant.studies.task.study").study_of(name)
+        task_study: Study[Any] = importlib.import_module(_TASKS).study_of(name)
         return task_study
     study: Study[Any] = importlib.import_module(_MODULES[name]).STUDY
     return study

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,8 +11,7 @@ import tomli_w
 from pliant import __version__
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Study
-from pliant.experiments.config import validated
-from pliant.experiments.registry import get_study, study_names
+from pliant.experiments.registry import run_of
 from pliant.telemetry.log import Log
 from pliant.telemetry.output import write_text
 
@@ -68,11 +66,7 @@ def _run_of(path: Path, study: Any, version: Any, values: Mapping[str, Any]) -> 
     if not isinstance(study, str):
         raise ConfigError(f"{path}: study is a name, got {study!r}")
     try:
-        if study in study_names():
-            found = get_study(study)
-            return found, validated(type(next(iter(found.cases.values()))), values)
-        task: tuple[Study[Any], CaseConfig] = importlib.import_module("pliant.studies.task.study").whole(study, values)
-        return task
+        return run_of(study, values)
     except ConfigError as error:
         other = "" if version == __version__ else f"; it was written by pliant {version}, this is pliant {__version__}"
         raise ConfigError(f"{path} cannot be repeated: {error}{other}") from None

@@ -104,10 +104,10 @@ def compare(
 
 
 def _kept(study: Study[Any], config: CaseConfig, folder: Path) -> Result:
+    write_config(study, config, folder)
     found = run_case(study, config, folder)
     result = Result(study, found, _log(found.log))
     save(result, folder)
-    write_config(study, config, folder)
     return result
 
 

@@ -18,7 +18,7 @@ from pliant.spatial import Array
 
 
 def mink_solver(robot: Robot, frame: str) -> PoseSolver:
-    """`MinkSolver`, whose module is imported now: mink takes longer to import than the rest of pliant."""
+    """`MinkSolver`, whose module is imported when one is made: mink brings solvers that take long to import."""
     from pliant.references.postures.ik_mink import MinkSolver
 
     return MinkSolver(robot, frame)

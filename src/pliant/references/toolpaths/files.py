@@ -68,8 +68,8 @@ def read_path(file: Path, unit: str = "m") -> PathPoints:
 
 
 def _csv(file: Path, text: str, length: float) -> PathPoints:
-    rows = csv.reader(io.StringIO(text))
-    header = next(rows, None)
+    rows = _rows(file, text)
+    header = rows[0][1] if rows else []
     if not header:
         raise ConfigError(
             f"{file} is empty; its first line names the columns: x, y and, if wanted, z, time, speed, force"
@@ -77,12 +77,12 @@ def _csv(file: Path, text: str, length: float) -> PathPoints:
     places, scales = _places(file, header, length)
     columns: dict[str, list[float]] = {name: [] for name in places}
     lines: list[int] = []
-    for row in rows:
+    for line, row in rows[1:]:
         if not any(cell.strip() for cell in row):
             continue
-        lines.append(rows.line_num)
+        lines.append(line)
         for name, place in places.items():
-            columns[name].append(_number(file, rows.line_num, name, row, place) * scales[name])
+            columns[name].append(_number(file, line, name, row, place) * scales[name])
     table = {name: np.array(values) for name, values in columns.items()}
     if "time" in table:
         late = np.flatnonzero(np.diff(table["time"]) <= 0.0)
@@ -91,6 +91,15 @@ def _csv(file: Path, text: str, length: float) -> PathPoints:
     z = table.get("z")
     points = np.column_stack([table["x"], table["y"], np.zeros(len(lines)) if z is None else z])
     return PathPoints(points, z is None, tuple(lines), table.get("time"), table.get("speed"), table.get("force"))
+
+
+def _rows(file: Path, text: str) -> list[tuple[int, list[str]]]:
+    """Number of the line and cells of every row."""
+    rows = csv.reader(io.StringIO(text))
+    try:
+        return [(rows.line_num, row) for row in rows]
+    except csv.Error as error:  # a cell without an end, for one
+        raise ConfigError(f"{file} is not CSV: {error}") from None
 
 
 def _places(file: Path, header: list[str], length: float) -> tuple[dict[str, int], dict[str, float]]:

@@ -18,8 +18,10 @@ from pliant.references.trajectories.trajectory import Trajectory
 from pliant.spatial import Array
 
 COLUMNS = ("time", "x", "y", "z")
-_LARGEST = 1e9  # bytes
 QUATERNION = ("qw", "qx", "qy", "qz")
+_LARGEST = 1e9  # bytes
+_NO_ARCHIVE = (ValueError, OSError, EOFError, SyntaxError, RuntimeError, zipfile.BadZipFile, zlib.error)
+"""what a file that is no array, or a damaged one, makes NumPy and zipfile raise"""
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def _read_columns(file: Path) -> dict[str, Array]:
                     file, {name: np.asarray(archive[name], dtype=np.float64) for name in archive.files}
                 )
         return _parse_csv(file, read_text(file, _LARGEST))
-    except (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError) as error:
+    except _NO_ARCHIVE as error:
         raise ConfigError(f"{file} is not a sampled trajectory: {error}") from error
 
 
