@@ -23,10 +23,15 @@ def dots(rows: Mapping[str, Array], xlabel: str, title: str = "", targets: Mappi
         title: above it.
         targets: label → upper bound, drawn into its row.
     """
+    from matplotlib.ticker import LogFormatter
+
     made = style.figure(7.4, 0.9 + 0.24 * len(rows) + (0.3 if title else 0.0), title)
     ax = made.add_subplot()
     style.dress(ax, xlabel)
     ax.set_xscale("log")
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.xaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
+    ax.tick_params(axis="x", which="both", labelsize=style.SMALL)
     for place, (label, values) in enumerate(rows.items()):
         finite = values[np.isfinite(values)]
         ax.plot(finite, np.full(len(finite), place), "o", color=style.colour(0), markersize=3.4, alpha=0.55)
