@@ -55,7 +55,7 @@ def test_a_flipped_byte_is_refused_or_said(whole: bytes) -> None:
     intact = Log.open(io.BytesIO(whole))
     assert not intact.truncated
     rng = np.random.default_rng(0)
-    outcomes = {"refused": 0, "said": 0, "harmless": 0}
+    outcomes = {"refused": 0, "said": 0, "no matter": 0}
     for place in rng.choice(len(whole), 360, replace=False):
         data = bytearray(whole)
         data[place] ^= 1 << int(rng.integers(8))
@@ -65,9 +65,9 @@ def test_a_flipped_byte_is_refused_or_said(whole: bytes) -> None:
         elif log.truncated:
             outcomes["said"] += 1
         else:
-            outcomes["harmless"] += 1
+            outcomes["no matter"] += 1
             assert same(log, intact), f"byte {place} changed the log in silence"
-    assert min(outcomes["said"], outcomes["harmless"]) > 0, outcomes
+    assert outcomes["said"] > 300, outcomes  # a checksum covers all but the magic bytes
 
 
 def test_a_cut_is_refused_or_said(whole: bytes) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
+import mcap.reader
 import mcap.writer
 import numpy as np
 import pytest
@@ -96,3 +97,53 @@ def test_metrics_of_a_log_come_from_the_true_signals(log: Log) -> None:
     assert found["torque change per tick"].value == pytest.approx(100.0 * steps.max() / 50.0)
     assert found["time at a torque limit"].value == 100.0
     assert not any(name.startswith("elbow") for name in found)  # the log has no true position of the elbow
+
+
+def shuffled(data: bytes) -> bytes:
+    """The same log, its messages chunked and ordered by another writer: no two rows of a chunk are built alike."""
+    reader = mcap.reader.NonSeekingReader(io.BytesIO(data))
+    messages = list(reader.iter_messages())
+    records = list(mcap.reader.SeekingReader(io.BytesIO(data)).iter_metadata())
+    messages.sort(key=lambda found: (found[2].log_time, hash((found[1].id, found[2].log_time // 3_000_000))))
+    buffer = io.BytesIO()
+    writer = mcap.writer.Writer(buffer, chunk_size=20_000)
+    writer.start()
+    for record in records:
+        writer.add_metadata(record.name, record.metadata)
+    ids: dict[int, int] = {}
+    for schema, channel, message in messages:
+        if channel.id not in ids:
+            assert schema is not None
+            known = writer.register_schema(schema.name, schema.encoding, schema.data)
+            ids[channel.id] = writer.register_channel(channel.topic, "cdr", known, channel.metadata)
+        writer.add_message(ids[channel.id], message.log_time, message.data, message.publish_time)
+    writer.finish()
+    return buffer.getvalue()
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    path = tmp_path_factory.mktemp("log") / "a.mcap"
+    with Recorder(path, RunInfo("stack", "figure8", "capped", "lwr4", 3, JOINTS, (50.0,) * 7)) as recorder:
+        for k in range(700):  # more than a block
+            recorder(make_tick(k))
+    return path.read_bytes()
+
+
+def test_the_order_of_messages_does_not_matter(written: bytes) -> None:
+    usual, other = Log.open(io.BytesIO(written)), Log.open(io.BytesIO(shuffled(written)))
+    assert set(usual.channels) == set(other.channels)
+    assert usual.phases() == other.phases()
+    for name in usual.channels:
+        np.testing.assert_array_equal(usual[name], other[name])
+        np.testing.assert_array_equal(usual.time(name), other.time(name))
+
+
+def test_a_log_that_does_not_stay_unpacked_reads_the_same(written: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = Log.open(io.BytesIO(written))
+    monkeypatch.setattr("pliant.telemetry.mcap.reader._KEPT", 0)
+    packed = Log.open(io.BytesIO(written))
+    assert packed.duration == usual.duration
+    for name in usual.channels:
+        np.testing.assert_array_equal(usual[name], packed[name])
+        np.testing.assert_array_equal(usual.time(name), packed.time(name))

@@ -17,7 +17,7 @@ from pliant.files import read_file
 from pliant.spatial import Array
 from pliant.telemetry.columns import columns, data_frame
 from pliant.telemetry.info import RunInfo
-from pliant.telemetry.mcap.reader import Contents, read
+from pliant.telemetry.mcap.reader import Contents, Piece, read
 from pliant.telemetry.mcap.topics import FIELDS, PREFIX
 
 CLOCK = "pliant.clock"
@@ -45,13 +45,34 @@ class LogChannel:
 
 @dataclass(frozen=True, slots=True)
 class _Stored:
-    """Samples of one channel as read: times (ns) and values, piece by piece."""
+    """Samples of one channel in the file: pieces of messages, and the bytes at which the numbers start."""
 
     topic: str
     unit: str
     shape: tuple[int, ...]
     labels: tuple[str, ...]
-    pieces: list[tuple[Array, Array]]
+    pieces: list[tuple[Piece, Sequence[int]]]
+    zero: int
+    """ns of the file's clock at which that of the run is zero"""
+
+    @property
+    def count(self) -> int:
+        return sum(piece.count for piece, _ in self.pieces)
+
+    def times(self) -> Array:
+        """(n,) s."""
+        times = np.concatenate([piece.times() for piece, _ in self.pieces])
+        return (times - self.zero).astype(np.float64) * 1e-9
+
+    def ends(self) -> tuple[float, float]:
+        """s: times of the first sample and the last."""
+        first, last = self.pieces[0][0].times()[0], self.pieces[-1][0].times()[-1]
+        return float(first - self.zero) * 1e-9, float(last - self.zero) * 1e-9
+
+    def values(self) -> Array:
+        """(n, …) numbers."""
+        values = np.concatenate([_numbers(piece.messages(), offsets) for piece, offsets in self.pieces])
+        return values.reshape(len(values), *self.shape)
 
 
 class Log:
@@ -73,7 +94,8 @@ class Log:
         self._stored = _channels(contents, begin)
         phases = contents.texts(f"{PREFIX}/reference/phase")
         self._phases = [(time - 1e-9 * begin, text) for time, text in phases]
-        self._arrays: dict[str, tuple[Array, Array]] = {}
+        self._times: dict[tuple[int, ...], Array] = {}
+        self._values: dict[str, Array] = {}
         self.channels: Mapping[str, LogChannel] = MappingProxyType(
             {name: self._describe(name, stored) for name, stored in sorted(self._stored.items())}
         )
@@ -112,10 +134,8 @@ class Log:
     @property
     def duration(self) -> float:
         """s from the first sample to the last."""
-        spans = [self.time(name) for name in self._stored]
-        return max((float(t[-1]) for t in spans if t.size), default=0.0) - min(
-            (float(t[0]) for t in spans if t.size), default=0.0
-        )
+        ends = [stored.ends() for stored in self._stored.values()]
+        return max((last for _, last in ends), default=0.0) - min((first for first, _ in ends), default=0.0)
 
     def __contains__(self, name: object) -> bool:
         return name in self._stored
@@ -126,7 +146,11 @@ class Log:
         Raises:
             ConfigError: there is no such channel.
         """
-        return self._array(name)[1]
+        stored = self._found(name)
+        if name not in self._values:
+            self._values[name] = stored.values()
+            self._values[name].setflags(write=False)
+        return self._values[name]
 
     def time(self, name: str = "measurement/q") -> Array:
         """Times of a channel's samples, (n,) s since the start of the run.
@@ -134,7 +158,12 @@ class Log:
         Raises:
             ConfigError: there is no such channel.
         """
-        return self._array(name)[0]
+        stored = self._found(name)
+        key = tuple(id(piece) for piece, _ in stored.pieces)  # the channels of a topic share their times
+        if key not in self._times:
+            self._times[key] = stored.times()
+            self._times[key].setflags(write=False)
+        return self._times[key]
 
     def matching(self, suffix: str) -> list[str]:
         """Names of the channels that end so."""
@@ -157,23 +186,15 @@ class Log:
         """The same as a polars DataFrame."""
         return data_frame("polars", columns(self, names))
 
-    def _array(self, name: str) -> tuple[Array, Array]:
+    def _found(self, name: str) -> _Stored:
         if name not in self._stored:
             raise ConfigError(f"{self.source} has no channel {name!r}; {options(self._stored, name)}")
-        if name not in self._arrays:
-            pieces = self._stored[name].pieces
-            time = np.concatenate([t for t, _ in pieces])
-            values = np.concatenate([x for _, x in pieces])
-            time.setflags(write=False)
-            values.setflags(write=False)
-            self._arrays[name] = time, values
-        return self._arrays[name]
+        return self._stored[name]
 
     def _describe(self, name: str, stored: _Stored) -> LogChannel:
-        time = self.time(name)
-        span = float(time[-1] - time[0]) if time.size > 1 else 0.0
-        rate = (time.size - 1) / span if span > 0.0 else 0.0
-        return LogChannel(name, stored.unit, stored.shape, stored.labels, int(time.size), rate, stored.topic)
+        first, last = stored.ends()
+        rate = (stored.count - 1) / (last - first) if last > first else 0.0
+        return LogChannel(name, stored.unit, stored.shape, stored.labels, stored.count, rate, stored.topic)
 
 
 # ---------------------------------------------------------------------- from bytes to arrays
@@ -185,23 +206,24 @@ def _channels(contents: Contents, begin: int) -> dict[str, _Stored]:
     for key in sorted(contents.channels):
         channel = contents.channels[key]
         fields = json.loads(channel.metadata.get(FIELDS, "{}"))
-        if not fields or not contents.times.get(key):
-            continue
-        time: Array = (np.array(contents.times[key], dtype=np.int64) - begin).astype(np.float64) * 1e-9
-        messages = np.frombuffer(b"".join(contents.data[key]), dtype=np.uint8).reshape(time.size, -1)
-        for name, about in fields.items():
-            values = _values(messages, about["offsets"]).reshape(time.size, *about["shape"])
-            shape = tuple(about["shape"])
+        pieces = contents.pieces.get(key, [])
+        for name, about in fields.items() if pieces else ():
+            shape, offsets = tuple(about["shape"]), tuple(about["offsets"])
+            if max(offsets, default=0) + 8 > min(piece.length for piece in pieces):
+                raise ValueError(f"messages of {channel.topic} are shorter than {name} needs")
             if name in found and found[name].shape != shape:
                 name = f"{name}[{','.join(map(str, shape))}]"  # a channel whose shape changed on the way
-            stored = found.setdefault(name, _Stored(channel.topic, about["unit"], shape, tuple(about["labels"]), []))
-            stored.pieces.append((time, values))
+            new = _Stored(channel.topic, about["unit"], shape, tuple(about["labels"]), [], begin)
+            found.setdefault(name, new).pieces.extend((piece, offsets) for piece in pieces)
     return found
 
 
-def _values(messages: npt.NDArray[np.uint8], offsets: Sequence[int]) -> Array:
+def _numbers(messages: npt.NDArray[np.uint8], offsets: Sequence[int]) -> Array:
     """(n, k) float64 from messages (n, bytes) and the bytes at which the numbers start."""
-    values = np.empty((messages.shape[0], len(offsets)))
+    n, k = len(messages), len(offsets)
+    if k and list(offsets) == list(range(offsets[0], offsets[0] + 8 * k, 8)):  # neighbours, in one go
+        return np.ascontiguousarray(messages[:, offsets[0] : offsets[0] + 8 * k]).view("<f8")
+    values = np.empty((n, k))
     for column, offset in enumerate(offsets):
         values[:, column] = np.ascontiguousarray(messages[:, offset : offset + 8]).view("<f8")[:, 0]
     return values

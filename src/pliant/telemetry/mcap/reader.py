@@ -2,22 +2,67 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import struct
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+import numpy as np
+import numpy.typing as npt
 from mcap.data_stream import ReadDataStream
-from mcap.exceptions import InvalidMagic
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Footer, Metadata, Schema
-from mcap.stream_reader import StreamReader, get_chunk_data_stream
+from mcap.records import Channel, Chunk, DataEnd, Footer, Metadata, Schema
+from mcap.stream_reader import get_chunk_data_stream
 from mcap_ros2.decoder import DecoderFactory
 
 from pliant.errors import OutputError
 
+Bytes = npt.NDArray[np.uint8]
+
+_MAGIC = b"\x89MCAP0\r\n"
 _RECORD = struct.Struct("<BQ")  # opcode, length
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
+_TIME = 6  # bytes of a message before its log time
+_KEPT = 256 * 2**20  # bytes of unpacked chunks that stay in memory; of a longer log they are unpacked when asked for
+
+
+@dataclass
+class _Chunk:
+    """A chunk of a file: unpacked, or as it came."""
+
+    packed: Chunk
+    data: bytes | None
+
+    def unpacked(self) -> bytes:
+        return _unpacked(self.packed) if self.data is None else self.data
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Messages of one channel in one chunk, all of the same length."""
+
+    chunk: _Chunk
+    at: int
+    """byte of the chunk where the first message's log time stands"""
+    stride: int
+    """bytes from one message of the channel to the next"""
+    count: int
+    length: int
+    """bytes of a message"""
+
+    def times(self) -> npt.NDArray[np.int64]:
+        """(count,) log times in ns."""
+        return np.ascontiguousarray(self._rows(0, 8)).view("<i8")[:, 0]
+
+    def messages(self) -> Bytes:
+        """(count, length) bytes."""
+        return self._rows(_MESSAGE.size - _TIME, self.length)
+
+    def _rows(self, start: int, length: int) -> Bytes:
+        data = np.frombuffer(self.chunk.unpacked(), dtype=np.uint8)[self.at + start :]
+        return np.lib.stride_tricks.as_strided(data, (self.count, length), (self.stride, 1), writeable=False)
 
 
 @dataclass
@@ -26,13 +71,13 @@ class Contents:
 
     channels: dict[int, Channel] = field(default_factory=dict)
     schemas: dict[int, Schema] = field(default_factory=dict)
-    times: dict[int, list[int]] = field(default_factory=dict)
-    """channel → log times, ns"""
-    data: dict[int, list[bytes]] = field(default_factory=dict)
-    """channel → messages"""
+    pieces: dict[int, list[Piece]] = field(default_factory=dict)
+    """channel → its messages, in the order of the file"""
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     complete: bool = False
     """False: the file ends or is damaged somewhere"""
+    kept: int = 0
+    """bytes of unpacked chunks in memory"""
 
     def texts(self, topic: str) -> list[tuple[float, str]]:
         """Time (s) and text of each std_msgs/String on a topic."""
@@ -42,8 +87,9 @@ class Contents:
             if channel.topic == topic and schema is not None and schema.name == "std_msgs/msg/String":
                 decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
                 assert decode is not None
-                messages = zip(self.times.get(key, []), self.data.get(key, []), strict=True)
-                found += [(time * 1e-9, str(decode(message).data)) for time, message in messages]
+                for piece in self.pieces.get(key, []):
+                    messages = zip(piece.times(), piece.messages(), strict=True)
+                    found += [(float(time) * 1e-9, str(decode(message.tobytes()).data)) for time, message in messages]
         return found
 
 
@@ -57,47 +103,95 @@ def read(name: str, data: bytes) -> Contents:
     Raises:
         OutputError: it is not MCAP.
     """
+    if not data.startswith(_MAGIC):
+        what = "is empty" if not data else "is not an MCAP file (wrong first bytes)"
+        raise OutputError(f"{name} {what}; a pliant log ends in .mcap")
     found = Contents()
-    reader = StreamReader(io.BytesIO(data), emit_chunks=True, validate_crcs=True, record_size_limit=len(data))
-    try:
-        for record in reader.records:
-            if isinstance(record, Chunk):
-                _take(found, record)
-            elif isinstance(record, Metadata):
+    with contextlib.suppress(Exception):  # whatever damaged bytes lead to: what was read until then counts
+        for opcode, start, end in _records(data, len(_MAGIC)):
+            if opcode == Opcode.CHUNK:
+                _take(found, Chunk.read(_stream(data, start, end)))
+            elif opcode == Opcode.METADATA:
+                record = Metadata.read(_stream(data, start, end))
                 found.metadata[record.name] = record.metadata
-            elif isinstance(record, Footer):
-                found.complete = True
-    except InvalidMagic as error:
-        if not found.complete:
-            what = "is empty" if not data else "is not an MCAP file (wrong first bytes)"
-            raise OutputError(f"{name} {what}; a pliant log ends in .mcap") from error
-    except Exception as error:  # whatever the reader makes of damaged bytes
-        if len(data) < 8 or not data.startswith(b"\x89MCAP0\r\n"):
-            what = "is empty" if not data else "is not an MCAP file (too short)"
-            raise OutputError(f"{name} {what}; a pliant log ends in .mcap") from error
+            elif opcode == Opcode.DATA_END:
+                _check(DataEnd.read(_stream(data, start, end)).data_section_crc, data[: start - _RECORD.size])
+            elif opcode == Opcode.FOOTER:
+                footer = Footer.read(_stream(data, start, end))
+                _check(footer.summary_crc, data[footer.summary_start : end - 4])
+                found.complete = data[end:] == _MAGIC
+                break
     return found
 
 
-def _take(found: Contents, chunk: Chunk) -> None:
-    stream, size = get_chunk_data_stream(chunk, validate_crc=True)  # a damaged chunk gives nothing at all
-    data = stream.read(size)
-    for opcode, start, end in _records(data):
+def _check(crc: int, data: bytes) -> None:
+    if crc not in (0, zlib.crc32(data)):  # 0: the writer made none
+        raise ValueError("the checksum does not fit the bytes")
+
+
+def _take(found: Contents, packed: Chunk) -> None:
+    """Adds what a chunk holds: equally built rows at once, anything else message by message."""
+    data = _unpacked(packed)  # a damaged chunk gives nothing at all
+    found.kept += len(data)
+    chunk, first = _Chunk(packed, data if found.kept <= _KEPT else None), True
+    for opcode, start, end in _records(data, 0):
         if opcode == Opcode.MESSAGE:
-            channel, _, time, _ = _MESSAGE.unpack_from(data, start)
-            found.times.setdefault(channel, []).append(time)
-            found.data.setdefault(channel, []).append(data[start + _MESSAGE.size : end])
+            rows = _rows(chunk, data, start - _RECORD.size) if first else []
+            alone = [(_channel(data, start), Piece(chunk, start + _TIME, 0, 1, end - start - _MESSAGE.size))]
+            for channel, piece in rows or alone:
+                found.pieces.setdefault(channel, []).append(piece)
+            if rows:
+                return
+            first = False
         elif opcode == Opcode.CHANNEL:
-            introduced = Channel.read(ReadDataStream(io.BytesIO(data[start:end])))
+            introduced = Channel.read(_stream(data, start, end))
             found.channels[introduced.id] = introduced
         elif opcode == Opcode.SCHEMA:
-            schema = Schema.read(ReadDataStream(io.BytesIO(data[start:end])))
+            schema = Schema.read(_stream(data, start, end))
             found.schemas[schema.id] = schema
 
 
-def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
-    at = 0
+def _rows(chunk: _Chunk, data: bytes, at: int) -> list[tuple[int, Piece]]:
+    """Channels and messages of a chunk from a byte on, if equally built rows fill it to its end; else nothing."""
+    row: list[tuple[int, int, int]] = []
+    for opcode, start, end in _records(data, at):
+        if opcode != Opcode.MESSAGE:
+            return []
+        if row and _channel(data, start) == row[0][0]:
+            break
+        row.append((_channel(data, start), start, end))
+    stride = row[-1][2] - at
+    count, rest = divmod(len(data) - at, stride)
+    if rest or not _alike(data, at, count, stride, [start for _, start, _ in row]):
+        return []
+    return [(c, Piece(chunk, start + _TIME, stride, count, end - start - _MESSAGE.size)) for c, start, end in row]
+
+
+def _alike(data: bytes, at: int, count: int, stride: int, starts: list[int]) -> bool:
+    """Whether opcode, length and channel of every message are those of the first row."""
+    rows = np.frombuffer(data, dtype=np.uint8, offset=at).reshape(count, stride)
+    heads = [slice(start - at - _RECORD.size, start - at + 2) for start in starts]
+    return all(bool(np.all(rows[:, head] == rows[0, head])) for head in heads)
+
+
+def _channel(data: bytes, start: int) -> int:
+    return int(_MESSAGE.unpack_from(data, start)[0])
+
+
+def _records(data: bytes, at: int) -> Iterator[tuple[int, int, int]]:
+    """Opcode of each record from a byte on, and where its content begins and ends."""
     while at < len(data):
         opcode, length = _RECORD.unpack_from(data, at)
-        at += _RECORD.size
-        yield opcode, at, at + length
-        at += length
+        start, at = at + _RECORD.size, at + _RECORD.size + length
+        if at > len(data):
+            raise ValueError("the data end within a record")
+        yield opcode, start, at
+
+
+def _stream(data: bytes, start: int, end: int) -> ReadDataStream:
+    return ReadDataStream(io.BytesIO(data[start:end]))
+
+
+def _unpacked(chunk: Chunk) -> bytes:
+    stream, size = get_chunk_data_stream(chunk, validate_crc=True)
+    return stream.read(size)
