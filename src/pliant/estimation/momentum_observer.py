@@ -108,6 +108,7 @@ class MomentumObserver(Estimator[MomentumState]):
         self.surface = normal if isinstance(normal, SurfaceGeometry) else PlaneSurface.facing(normal)
         self.frames = None if frames is None else frozenset(frames)
         self._ids = {frame: robot.frame_id(frame) for frame in frames or ()}
+        self._upper = np.triu(np.ones((robot.n, robot.n), dtype=bool))
         self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
 
     def init(self, measurement: Measurement) -> MomentumState:
@@ -143,8 +144,8 @@ class MomentumObserver(Estimator[MomentumState]):
     def _model_terms(self, measurement: Measurement, wrenches: Mapping[str, Array]) -> tuple[Array, Array]:
         """p (n,) and Jᵀλ + β (n,) at a measurement."""
         model, data, q, v = self.robot.model, self._data, measurement.q, measurement.v
-        upper = np.triu(np.asarray(pin.crba(model, data, q)))  # pinocchio does not promise the lower triangle
-        mass = upper + np.triu(upper, 1).T
+        upper = np.asarray(pin.crba(model, data, q))
+        mass = np.where(self._upper, upper, upper.T)  # pinocchio does not promise the lower triangle
         C = np.array(pin.computeCoriolisMatrix(model, data, q, v))
         explained: Array = C.T @ v
         if self.compensation == "none":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -168,7 +169,7 @@ class WrenchEstimator(Estimator[WrenchState]):
     def _above(self, frame: str, wrench: Array, time: float, state: WrenchState) -> float:
         last = state.above.get(frame, -np.inf)
         touching = time - last <= self.thresholds.linger
-        size = float(np.linalg.norm(wrench[:3]))
+        size = math.sqrt(wrench[:3].dot(wrench[:3]))
         return time if size > (self.thresholds.end if touching else self.thresholds.begin) else last
 
 

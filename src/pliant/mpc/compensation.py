@@ -97,7 +97,7 @@ class Compensator:
         wanted = state.wanted
         for _ in range(self._late):
             wanted = (*wanted[1:], wanted[-1])
-            under_way.append(np.mean(wanted, axis=0))
+            under_way.append(np.add.reduce(wanted) / len(wanted))
         return self._prediction.ahead(x, [u + disturbance for u in under_way], acted + disturbance, touching)
 
     def shifted(self, horizon: HorizonReference, state: CompensationState) -> HorizonReference:
@@ -137,7 +137,7 @@ class Compensator:
     def send(self, wanted: Array, state: CompensationState) -> tuple[Array, CompensationState]:
         """The torque (n,) that is sent for a wanted one within the limits, and the next state."""
         recent = (*state.wanted[1:], wanted)
-        sent = wanted if self._averaged == 1 else np.mean(recent, axis=0)
+        sent = wanted if self._averaged == 1 else np.add.reduce(recent) / len(recent)
         return sent, replace(state, commands=(*state.commands[1:], sent), wanted=recent)
 
 

@@ -22,7 +22,7 @@ from pliant.mpc.plan import Plan, SafeTorque, plan_of, torque_from, usable
 from pliant.mpc.problem import MpcProblem, problem_from_robot
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
-from pliant.spatial import Array, all_finite
+from pliant.spatial import Array, all_finite, clamp
 
 _TICK = 1e-9  # s; smaller than any period, larger than the rounding of a clock
 
@@ -144,7 +144,7 @@ class MpcController(Controller[MpcState]):
             self._solve(estimate, reference, x, R_world_task, state)
             state.next_solve = estimate.time + self.config.period
         wanted, source = self._torque(estimate.time, x, state)
-        within = np.clip(wanted, -self._limit, self._limit)
+        within = clamp(wanted, -self._limit, self._limit)
         torque, state.compensation = self.compensator.send(within, state.compensation)
         channels: Mapping[str, float | Array] = {
             **state.channels,

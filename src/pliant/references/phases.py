@@ -22,6 +22,7 @@ from pliant.spatial import Array
 
 _REMEMBERED = 1024  # instants
 _NO_WRENCH = vector(np.zeros(6), "no wrench")
+_WORLD = np.eye(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +183,11 @@ class PhasedSource(ReferenceSource[PhaseState]):
         return state
 
     def _task(self, state: PhaseState, time: float) -> TaskReference:
-        phase, said = self.phases[state.index], self._said(state, time)
+        return self._placed(state, self._said(state, time), time)
+
+    def _placed(self, state: PhaseState, said: Said, time: float) -> TaskReference:
+        """What the phase says, moved to where it counts from."""
+        phase = self.phases[state.index]
         offset = {"begin": state.begin, "touch": state.touch}.get(phase.anchor, 0.0)
         position, velocity, acceleration = said.position + offset, said.velocity, said.acceleration
         if phase.anchor == "surface" and said.normal is not None:
@@ -207,11 +212,10 @@ class PhasedSource(ReferenceSource[PhaseState]):
         postures: list[Array] = []
         for instant in times.tolist():
             state = self._expected(state, instant)
-            tasks.append(self._task(state, instant))
+            said = self._said(state, instant)
+            tasks.append(self._placed(state, said, instant))
             names.append(self.phases[state.index].name)
-            posture = self._said(state, instant).posture
-            postures += [] if posture is None else [posture]
-        axes = [np.eye(3) if task.task_rotation is None else task.task_rotation for task in tasks]
+            postures += [] if said.posture is None else [said.posture]
         return Preview(
             time=times,
             position=np.array([task.position for task in tasks]),
@@ -220,7 +224,9 @@ class PhasedSource(ReferenceSource[PhaseState]):
             wrench=np.array([task.wrench for task in tasks]),
             phase=tuple(names),
             posture=np.array(postures) if len(postures) == len(times) else None,
-            task_rotation=np.array(axes) if self._turning else None,
+            task_rotation=np.array([_WORLD if x.task_rotation is None else x.task_rotation for x in tasks])
+            if self._turning
+            else None,
         )
 
     def _position(self, q: Array) -> Array:

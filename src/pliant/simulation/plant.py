@@ -25,7 +25,7 @@ from pliant.simulation.link_capsule import LinkCapsule
 from pliant.simulation.scene import Scene
 from pliant.simulation.stepping import shares, substeps
 from pliant.simulation.world import World
-from pliant.spatial import Array
+from pliant.spatial import Array, clamp
 
 SPEED_STOP = 2.0
 """multiple of the joints' speed limits at which a real arm stops"""
@@ -145,7 +145,7 @@ class MujocoPlant(Plant[World]):
 
     def step(self, command: Command, world: World) -> tuple[Measurement, World]:
         limit = self.robot.torque_limit
-        world.torque = np.clip(command.torque, -limit, limit)
+        world.torque = clamp(command.torque, -limit, limit)
         if self.explicit is None:
             self._step_mujoco(world)
         else:

@@ -13,7 +13,7 @@ import numpy as np
 from pliant.configuration import Config, Range, quantity
 from pliant.simulation.imperfections.link_config import PerJoint
 from pliant.simulation.seeding import generator
-from pliant.spatial import Array, as_vector
+from pliant.spatial import Array, as_vector, clamp
 
 
 class ActuationConfig(Config):
@@ -97,7 +97,7 @@ class Actuation:
             v: (n,) true joint velocity, rad/s.
             state: consumed.
         """
-        limited = np.clip(motor_torque, -self.limit, self.limit)
+        limited = clamp(motor_torque, -self.limit, self.limit)
         state.clamped = motor_torque - limited
         state.filtered = limited + self._kept * (state.filtered - limited)
         friction = self._dry * np.tanh(v / self.config.friction_velocity) + self._viscous * v

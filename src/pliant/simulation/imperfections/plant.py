@@ -22,7 +22,7 @@ from pliant.simulation.imperfections.delay import Delay, whole_periods
 from pliant.simulation.imperfections.ripple import Ripple
 from pliant.simulation.imperfections.sensing import Sensing, SensingState
 from pliant.simulation.imperfections.torque_loop import TorqueLoop, TorqueLoopState
-from pliant.spatial import Array, as_vector
+from pliant.spatial import Array, as_vector, clamp
 
 
 @dataclass(slots=True)
@@ -127,7 +127,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         sent = np.zeros_like(command.torque)
         for _ in range(self._ticks):
             asked, world.commands = self._delay.step(command.torque, world.commands)
-            asked = np.clip(asked, -self._actuation.limit, self._actuation.limit)
+            asked = clamp(asked, -self._actuation.limit, self._actuation.limit)
             sent += asked / self._ticks
             true = self._drive(asked, world)
             self._sense(replace(true, torque_sent=asked), world)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pliant.configuration import Config, quantity
-from pliant.spatial import Array
+from pliant.spatial import Array, clamp
 
 
 class TorqueLoopConfig(Config):
@@ -61,7 +61,7 @@ class TorqueLoop:
         integral = state.error_integral + dt * error
         rate = (measured - state.measured_before) / dt
         motor = desired - gains.gain_p * error - gains.gain_i * integral - gains.gain_d * rate
-        within = np.clip(motor, -self._limit, self._limit)
+        within = clamp(motor, -self._limit, self._limit)
         winding_up = (motor - within) * error < 0.0  # the integral would push further beyond the limit
         integral = np.where(winding_up, state.error_integral, integral)
         return within, TorqueLoopState(integral, measured)
