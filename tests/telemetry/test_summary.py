@@ -14,6 +14,7 @@ import pliant
 from pliant.errors import OutputError
 from pliant.telemetry import Case, Metric, Summary, output_folder, over_runs
 from pliant.telemetry.markdown import summary_markdown
+from pliant.telemetry.proportion import bound_text
 from pliant.telemetry.table import number, summary_table
 
 SUMMARY = Summary(
@@ -111,6 +112,29 @@ def test_table_and_markdown_show_targets_and_failures() -> None:
             assert expected in text
         assert (text.count("✗"), text.count("✓")) in {(2, 2), (3, 2)}  # the terminal marks the failed run too
     assert "**2.30**" in markdown
+
+
+def test_a_comparison_is_readable_at_eighty_columns() -> None:
+    """Names of metrics stay whole, and columns that say nothing are left out."""
+    metrics = tuple(Metric(f"landing_peak_force_{k}", 12.3456, "N", std=0.0123, runs=10) for k in range(3))
+    cases = tuple(Case(name, "torque-feedback-mpc", metrics, runs=10) for name in ("wipe", "wipe-tilted"))
+    console = Console(width=80, record=True, file=io.StringIO())
+    console.print(summary_table(Summary("task", "0", cases)))
+    text = console.export_text()
+    assert text.count("landing_peak_force_1 ") == 2
+    assert "wipe-tilted · torque-feedback-mpc" in text
+    assert "paper" not in text
+    assert "target" not in text
+    whole = Summary("task", "0", (Case("wipe", "stack", (Metric("peak", 1.0, "N", paper=2.0, target=3.0),)),))
+    console.print(summary_table(whole))
+    text = console.export_text()
+    assert all(word in text for word in ("paper", "target", "≤ 3.00"))
+
+
+def test_the_bound_on_a_share_is_a_percentage() -> None:
+    assert bound_text(2, 2) == "100 %"
+    assert bound_text(0, 2) == "78 %"
+    assert bound_text(0, 100) == "3 %"
 
 
 @pytest.mark.parametrize(

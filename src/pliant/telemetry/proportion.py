@@ -41,7 +41,13 @@ def share_bound(count: int, runs: int, confidence: float = CONFIDENCE) -> float:
 
 def share_text(count: int, runs: int) -> str:
     """The count with its bound: `0 of 140: ≤ 2.1 %`."""
-    return f"{count} of {runs}: ≤ {100.0 * share_bound(count, runs):.2g} %" if runs else "0 of 0"
+    return f"{count} of {runs}: ≤ {bound_text(count, runs)}" if runs else "0 of 0"
+
+
+def bound_text(count: int, runs: int) -> str:
+    """`share_bound` in percent, two digits."""
+    percent = 100.0 * share_bound(count, runs)
+    return "100 %" if percent >= 99.5 else f"{percent:.2g} %"
 
 
 def _at_most(count: int, runs: int, share: float) -> float:

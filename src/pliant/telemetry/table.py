@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from rich.table import Table
 from rich.text import Text
 
-from pliant.telemetry.proportion import share_bound, share_text
+from pliant.telemetry.proportion import bound_text, share_text
 from pliant.telemetry.summary import Case, Metric, Summary
 
 MET, MISSED = "✓", "✗"
@@ -19,24 +20,42 @@ COUNTING = (
 
 
 def summary_table(summary: Summary) -> Table:
-    """A table with one row per metric, grouped by case and controller."""
+    """A table with one row per metric, under case and controller; columns that say nothing are left out."""
     title = f"{summary.study} · pliant {summary.version}" + ("" if summary.seed is None else f" · seed {summary.seed}")
     table = Table(title=title, title_justify="left", title_style="bold", header_style="bold", expand=False)
-    single = len(summary.cases) == 1
-    if single:
+    if single := len(summary.cases) == 1:
         table.title = f"{title} · {summary.cases[0].case} · {summary.cases[0].controller}"
-    for heading in ("metric",) if single else ("case", "controller", "metric"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("value", "paper", "target"):
+    metrics = [metric for case in summary.cases for metric in case.metrics]
+    columns = _Columns(
+        paper=any(metric.paper is not None for metric in metrics),
+        target=any(metric.target is not None for metric in metrics),
+    )
+    table.add_column("metric", overflow="fold")
+    for heading in ("value", *columns.headings):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("unit")
     table.add_column("runs", justify="right", no_wrap=True)
     table.add_column("", width=1)
     for case in summary.cases:
-        _add_case(table, case, single)
+        _add_case(table, case, columns, single)
     if any(case.runs > 1 for case in summary.cases):
         table.caption, table.caption_justify = COUNTING, "left"
     return table
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Which of the columns beside the value say anything."""
+
+    paper: bool
+    target: bool
+
+    @property
+    def headings(self) -> tuple[str, ...]:
+        return ("paper",) * self.paper + ("target",) * self.target
+
+    def cells(self, metric: Metric) -> tuple[str, ...]:
+        return (number(metric.paper),) * self.paper + (target_text(metric),) * self.target
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -81,30 +100,29 @@ def failed_text(case: Case) -> str:
     if not count:
         return f"no run failed, {share_text(0, case.runs)}" if case.runs > 1 else ""
     more = f" (and {count - 1} more)" if count > 1 else ""
-    bound = f" (≤ {100.0 * share_bound(count, case.runs):.2g} %)" if case.runs > 1 else ""
+    bound = f" (≤ {bound_text(count, case.runs)})" if case.runs > 1 else ""
     return f"{count} of {case.runs} runs failed{bound}: {case.failures[0]}{more}"
 
 
-def _add_case(table: Table, case: Case, single: bool) -> None:
-    names = () if single else (case.case, case.controller)
+def _add_case(table: Table, case: Case, columns: _Columns, single: bool) -> None:
+    if not single:
+        table.add_row(Text(f"{case.case} · {case.controller}", style="bold"))
+    indent = "" if single else "  "
     for metric in case.metrics:
         missed = metric.met is False
         mark = "" if metric.met is None else MISSED if missed else MET
         table.add_row(
-            *names,
-            metric.name,
+            indent + metric.name,
             Text(value_text(metric), style="bold red" if missed else ""),
-            number(metric.paper),
-            target_text(metric),
+            *columns.cells(metric),
             metric.unit,
             runs_text(metric),
             Text(mark, style="bold red" if missed else "green"),
         )
-        names = () if single else ("", "")
+    blank = [""] * (len(columns.headings) + 3)
     if failed := failed_text(case):
         style, mark = ("bold red", MISSED) if case.failures else ("dim", "")
-        table.add_row(*names, Text(failed, style=style), *[""] * 5, Text(mark, style=style))
-        names = () if single else ("", "")
+        table.add_row(Text(failed, style=style), *blank, Text(mark, style=style))
     if case.note:
-        table.add_row(*names, Text(case.note, style="dim"))
+        table.add_row(Text(case.note, style="dim"))
     table.add_section()
