@@ -17,7 +17,7 @@ import pytest
 from rich.console import Console
 
 from pliant.cli.study import resume_command
-from pliant.errors import OutputError, RunFailedError
+from pliant.errors import ConfigError, OutputError, RunFailedError
 from pliant.experiments.parquet import read_parquet, write_parquet
 from pliant.experiments.pool import open_pool
 from tests.experiments.tasks import nap
@@ -92,8 +92,14 @@ def test_a_cluster_gives_the_same_rows_and_when_it_dies_they_are_kept(alone: Pat
         code, _, errors = study("toy", *CASES, "--scheduler", address, "--out", tmp_path / "whole")
         assert code == 0, errors
         assert content(tmp_path / "whole") == content(alone)
+        slow = ("toy", "--case", "slow", "--seeds", 400, "--scheduler", address, "--out")
+        process = start(*slow, tmp_path / "stopped", start_new_session=True)
+        _wait_for_rows(tmp_path / "stopped")
+        _, errors = _interrupted(process)
+        assert process.returncode == 130, errors
+        assert len(errors.strip().splitlines()) == 1
         folder = tmp_path / "cut"
-        process = start("toy", "--case", "slow", "--seeds", 400, "--scheduler", address, "--out", folder)
+        process = start(*slow, folder)
         _wait_for_rows(folder)
         scheduler.kill()
         _, errors = process.communicate(timeout=90)
@@ -104,10 +110,16 @@ def test_a_cluster_gives_the_same_rows_and_when_it_dies_they_are_kept(alone: Pat
     assert 0 < rows(folder).num_rows < 400
 
 
-def test_workers_that_all_die_and_a_scheduler_without_any_are_one_sentence(tmp_path: Path) -> None:
+def test_workers_that_stand_still_or_all_die_and_a_scheduler_without_any_are_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with cluster(1) as (address, (_, worker)), open_pool(1, address) as pool:
         answers = pool(nap, [0.2] * 200)
         next(answers)
+        worker.send_signal(signal.SIGSTOP)
+        monkeypatch.setattr("pliant.experiments.cluster._VERSION", 0.5)
+        with pytest.raises(ConfigError, match=r"the workers of tcp.* do not answer"), open_pool(1, address):
+            pass
         worker.kill()
         with pytest.raises(RunFailedError, match=r"all workers of the dask scheduler .* went away.* is kept"):
             list(answers)
@@ -126,6 +138,12 @@ def test_a_killed_worker_costs_nothing_but_a_run_that_always_kills_fails(tmp_pat
     assert "distributed" not in errors
     assert rows(tmp_path / "out")["status"].to_pylist() == ["finished", "finished", "lost"]
     assert "its process died" in rows(tmp_path / "out")["failure"].to_pylist()[-1]
+
+
+def _interrupted(process: subprocess.Popen[str]) -> tuple[str, str]:
+    """Ctrl-C, as a terminal sends it: to the workers too. The command ends soon: within 0.8 s on an idle machine."""
+    os.killpg(process.pid, signal.SIGINT)
+    return process.communicate(timeout=20)
 
 
 def _wait_for_rows(folder: Path, count: int = 1) -> None:
@@ -159,8 +177,7 @@ def test_an_interrupted_study_is_resumed_to_the_same_table(jobs: int, tmp_path: 
     folder = tmp_path / "cut"
     process = start(*cases, "--jobs", jobs, "--out", folder, start_new_session=True)
     _wait_for_rows(folder)
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
-    out, errors = process.communicate(timeout=60)
+    out, errors = _interrupted(process)
     assert process.returncode == 130, errors
     assert "Traceback" not in errors
     assert f"--resume {folder}" in errors

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 _KNOCK, _ANSWER = 2.0, 3.0  # s for a scheduler's port to say what it is, and for the scheduler to answer
-_WORKERS = 8.0  # s for the first worker to report: they may have been started together with the scheduler
+_WORKERS = 6.0  # s for the first worker to report: they may have been started together with the scheduler
+_VERSION = 3.0  # s for all workers to import pliant and say its version
 _LOOK = 0.2  # s between two looks for Ctrl-C
 _ALIVE, _GONE = 2.0, 8.0  # s between two looks whether scheduler and workers are there, and until they count as gone
 _GREETING = range(16, 1 << 16)  # bytes of dask's first message
@@ -183,7 +184,10 @@ def _received(line: socket.socket, count: int, until: float) -> bytes:
 
 def _check_versions(client: Client, scheduler: str) -> None:
     try:
-        found: dict[str, str] = client.run(_version)  # pyright: ignore[reportAssignmentType] (not a coroutine here)
+        run: Any = client.run  # what it does with the limit of time is untyped
+        found: dict[str, str] = run(_version, callback_timeout=_VERSION)
+    except TimeoutError:
+        raise ConfigError(f"the workers of {scheduler} do not answer; start them again") from None
     except Exception as error:  # whatever a foreign worker makes of it
         raise ConfigError(
             f"the workers of {scheduler} cannot import pliant {__version__}: {type(error).__name__}: {error}"
