@@ -195,7 +195,9 @@ def table(endings: list[Ending]) -> str:
     """In Markdown."""
     lines = ["| what ends the command | s | at most | exit code |", "|---|---:|---:|---:|"]
     for end in endings:
-        lines.append(f"| {end.what} | {end.seconds:.1f} | {end.limit:g} | {end.code if end.code is not None else '∞'} |")
+        lines.append(
+            f"| {end.what} | {end.seconds:.1f} | {end.limit:g} | {end.code if end.code is not None else '∞'} |"
+        )
     return "\n".join(lines)
 
 

@@ -8,33 +8,62 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.faults import KINDS, MPC, Faults, FaultyPlant, cells, every_run, spoilt
+from benchmarks.fault_ledgers import Books
+from benchmarks.fault_parts import FREE_OR_NOT, Faults, FaultyPlant
+from benchmarks.faults import LAYERS, RUNS, Count, Spoiled, every_run, spoil
 from pliant import loop
+from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study
 from pliant.guard import Fault, Guard
 from pliant.signals import Command, Measurement, Tick
+from pliant.wiring.registry import controllers
 
 
 def test_no_fault_gets_past_the_guard() -> None:
-    """Two thousand and more seeded faults: no cell of kinds × controllers is empty, nor one of an MPC's phases."""
-    runs = every_run()
-    for name, run in runs.items():
-        assert run.wrong.total() == 0, (name, run.wrong)
-    count = cells(runs)
-    assert count.total() >= 2000
-    for controller in dict.fromkeys(controller for controller, _, _ in count):
-        phases = {phase for name, phase, _ in count if name == controller}
-        assert phases >= ({"reach", "track", "ramp", "contact", "circle"} if controller in MPC else set())
-        for kind in KINDS:
-            assert any(count[controller, phase, kind] for phase in phases), (controller, kind)
+    """Two thousand and more seeded faults: no cell of kinds × controllers × phases is empty, and every ledger stays
+    what it is when it is kept a second time."""
+    count = every_run()
+    assert dict(count.wrong) == {"not finite": 0, "beyond a limit": 0, "ledger": 0}
+    assert count.cells.total() >= 2000
+    assert {of.controller for of in RUNS} == set(controllers())
+    for of in RUNS:
+        for phase in of.phases:
+            assert count.empty(of, phase) == [], (of.controller, phase)
+    kept = {ledger: {name for name, book in count.books if book == ledger} for _, ledger in count.books}
+    assert kept["stack"] == {name for name, entry in controllers().items() if entry.family in ("stack", "haptic")}
+    layered = {of.controller for of in RUNS if of.changes}
+    assert kept["joint limits"] == kept["torque step"] == layered
 
 
 def test_the_count_sees_what_gets_out_without_a_guard(monkeypatch: pytest.MonkeyPatch) -> None:
     """The control: a guard that lets every command pass."""
     monkeypatch.setattr(Guard, "command", lambda guard, command, watched: (command, Fault.NONE))
-    kinds = ("nan command", "huge command")
-    run = spoilt("stack", "figure8-wall", "stack", 0.1, kinds, seed=1)
-    assert run.wrong["not finite"] + run.wrong["beyond a limit"] > 0
+    count = Count()
+    spoil(Spoiled("stack", "figure8-wall", "stack", 0.1, FREE_OR_NOT), count, 1, ("nan command", "huge command"))
+    assert count.wrong["not finite"] + count.wrong["beyond a limit"] > 0
+
+
+@pytest.mark.parametrize("controller", ["stack", "operational-space"])
+def test_the_books_see_a_reading_that_a_law_was_fed_alone(controller: str) -> None:
+    """The control: every tenth estimate that the law gets is not the one that the books get."""
+    study = get_study("stack")
+    changes = {"controller": controller, "duration": 0.1, **LAYERS}
+    wired = study.build(merged(study.case("figure8-wall"), changes))
+    for spoil_every in (0, 10):
+        books, state = Books(), None
+        reading, world = wired.plant.init()
+        est = wired.estimator.init(reading)
+        ref = None
+        for tick in range(60):
+            estimate, est = wired.estimator.step(reading, est)
+            ref = ref or wired.source.init(estimate)
+            wish, ref = wired.source.step(estimate, ref)
+            state = state or wired.controller.init(estimate)
+            odd = replace(estimate, q=estimate.q + 1e-2) if spoil_every and tick % spoil_every == 9 else estimate
+            command, state = wired.controller.step(odd, wish, state)
+            books(estimate, command, state)
+            reading, world = wired.plant.step(command, world)
+        assert bool(books.wrong) == bool(spoil_every)
 
 
 def test_the_guard_names_what_it_found_and_holds_then_compensates_gravity() -> None:
@@ -47,7 +76,7 @@ def test_the_guard_names_what_it_found_and_holds_then_compensates_gravity() -> N
             reading, world = self.inner.step(command, world)
             return (replace(reading, q=reading.q * np.nan) if reading.time > 0.0495 else reading), world
 
-    plant = Blind(wired.plant, Faults(0))
+    plant = Blind(wired.plant, Faults(0, FREE_OR_NOT))
     outcome = loop.run(plant, wired.estimator, wired.source, wired.controller, range(200), [seen.append], wired.robot)
     faulty = [tick for tick in seen if tick.guard]
     assert {tick.guard for tick in faulty} == {int(Fault.NOT_FINITE)}

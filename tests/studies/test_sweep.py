@@ -120,6 +120,8 @@ def test_workers_that_stand_still_or_all_die_and_a_scheduler_without_any_are_one
         monkeypatch.setattr("pliant.experiments.cluster._VERSION", 0.5)
         with pytest.raises(ConfigError, match=r"the workers of tcp.* do not answer"), open_pool(1, address):
             pass
+        for name, seconds in (("_ALIVE", 0.5), ("_GONE", 2.0)):
+            monkeypatch.setattr(f"pliant.experiments.cluster.{name}", seconds)
         worker.kill()
         with pytest.raises(RunFailedError, match=r"all workers of the dask scheduler .* went away.* is kept"):
             list(answers)
