@@ -134,7 +134,7 @@ def rows(folder: Path, process: subprocess.Popen[str]) -> None:
     import pyarrow.parquet as pq
 
     file = folder / "results.parquet"
-    while process.poll() is None and not (file.exists() and pq.read_table(file).num_rows):
+    while process.poll() is None and not (file.exists() and pq.read_metadata(file).num_rows):
         time.sleep(0.05)
 
 

@@ -151,7 +151,7 @@ def _interrupted(process: subprocess.Popen[str]) -> tuple[str, str]:
 def _wait_for_rows(folder: Path, count: int = 1) -> None:
     deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline:
-        if (folder / "results.parquet").exists() and pq.read_table(folder / "results.parquet").num_rows >= count:
+        if (folder / "results.parquet").exists() and pq.read_metadata(folder / "results.parquet").num_rows >= count:
             return
         time.sleep(0.05)
 
