@@ -35,14 +35,29 @@ def test_other_keys_change_every_row_and_leave_what_tells_them_apart() -> None:
         assert (after.variant, after.seed) == (before.variant, before.seed)
 
 
-def test_another_controller_makes_rows_the_same_and_each_is_run_once() -> None:
-    found = asked_runs(Request("haptic", ("random",), 2, ("controller=stack",)))
-    assert [(run.controller, run.seed) for run in found] == [("stack", 0), ("stack", 1)]
+def test_rows_are_made_of_the_changed_case() -> None:
+    """What follows from the case's own values follows from the changed ones: ten times the weight that was set."""
+    change = "control.costs.torque.weight=0.3"
+    asked = asked_runs(Request("polishing", ("force-weight",), 1, (change,)))
+    assert {run.control["costs"]["torque"]["weight"] for run in asked} == {0.3}
+    shifted = asked_runs(Request("haptic", ("random",), 3, ("seed=5",)))
+    assert [run.seed for run in shifted] == [5, 6, 7] * 2
 
 
-def test_rows_that_would_have_the_same_name_are_refused() -> None:
-    with pytest.raises(ConfigError, match="two different runs of case 'slow' would have the same name"):
-        asked_runs(Request("polishing", ("slow",), 1, ("controller=haptic",)))
+@pytest.mark.parametrize(
+    ("study", "case", "change"),
+    [
+        ("haptic", "random", "controller=stack"),  # the printed exploration is a row
+        ("polishing", "tables-2-3-4", "imperfections.torque_loop.gain_p=0.5"),
+        ("polishing", "robustness", "imperfections.computation_delay=0.005"),  # the value it has: rows set it again
+        ("stack", "balance", "control.tasks.elbow.translation.force_max=80.0"),
+        ("stack", "figure8-wall", "wall.x=0.05"),
+        ("haptic", "parameters", "environment.floor.material.stiffness=1e5"),
+    ],
+)
+def test_what_any_row_sets_is_refused_whatever_its_value(study: str, case: str, change: str) -> None:
+    with pytest.raises(ConfigError, match=f"'{change.partition('=')[0]}' cannot be set for the whole case '{case}'"):
+        asked_runs(Request(study, (case,), 1, (change,)))
 
 
 @pytest.mark.parametrize("name", study_names())

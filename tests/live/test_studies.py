@@ -86,7 +86,7 @@ def test_a_moved_target_travels_at_a_bounded_speed() -> None:
 
 def test_every_study_offers_something_to_turn() -> None:
     for name in set(study_names()) - {"toy"}:  # tests/studies/toy.py puts itself among them
-        for config in get_study(name).cases.values():
+        for config in (case.config for case in get_study(name).cases.values()):
             assert parameters_of(config) is not None or online_fields(config), f"{name} {config.case}"
 
 

@@ -13,6 +13,8 @@ from pliant.studies.haptic.delays import DELAYS, PLACES, SURFACES, largest_stabl
 from pliant.studies.haptic.parameters import PARAMETERS
 from pliant.telemetry.summary import Metric
 
+DELAY = STUDY.cases["delay"]
+
 
 def ran(config, rms: float = 0.01, speed: float = 0.0, peak: float = 30.0, share: float = 0.1) -> Result:
     metrics = (
@@ -31,7 +33,7 @@ def test_largest_stable_delay_ends_at_the_first_run_that_is_not(bad: dict[str, f
     for config in STUDY.runs("delay")[1:]:
         late = config.hardware.force_delay > 0.0105 or config.hardware.command_delay > 0.0025
         results.append(ran(config, **bad) if late and not config.variant.endswith(" 50 ms") else ran(config))
-    largest = largest_stable(results)
+    largest = largest_stable(DELAY, results)
     assert largest["rigid, 1e6 N/m", "force signal"] == 8.0
     assert largest["rigid, 1e6 N/m", "command"] == 2.0
     assert largest["soft, 1e3 N/m", "both"] == 2.0
@@ -39,7 +41,7 @@ def test_largest_stable_delay_ends_at_the_first_run_that_is_not(bad: dict[str, f
 
 def test_failed_run_is_not_stable() -> None:
     results = [Result(config, (), "diverged") for config in STUDY.runs("delay")[1:]]
-    assert set(largest_stable(results).values()) == {0.0}
+    assert set(largest_stable(DELAY, results).values()) == {0.0}
 
 
 def test_runs_of_the_full_study() -> None:

@@ -22,7 +22,7 @@ THREE = ("force-feedback-mpc", "torque-feedback-mpc", "classical-mpc")
 
 
 def _config(**changes: object) -> PolishingConfig:
-    return merged(STUDY.cases["ideal"], {"duration": 4.5, **changes})
+    return merged(STUDY.case("ideal"), {"duration": 4.5, **changes})
 
 
 @cache

@@ -8,16 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from pliant.cli.paper_tables import paper_tables
 from pliant.errors import ConfigError
 from pliant.experiments.base import Result
 from pliant.experiments.config import merged
 from pliant.experiments.runner import run_case
+from pliant.experiments.summarise import summarised
 from pliant.simulation import Imperfections
 from pliant.studies.polishing import STUDY
-from pliant.studies.polishing.cases import ALL, CASES, TILTS
+from pliant.studies.polishing.cases import CASES
 from pliant.studies.polishing.config import PolishingConfig
-from pliant.studies.polishing.paper import STOCK
-from pliant.studies.polishing.tables import report
+from pliant.studies.polishing.rows import ALL, STOCK, TILTS
 from pliant.telemetry.summary import Metric
 
 DRAWS = ((0.1, 900), (-0.1, 902))  # tilt in rad, seed; ten seeds of seven tilts are `pliant study polishing`
@@ -27,7 +28,7 @@ BEST = "offset-free-mpc"
 def config_of(controller: str, tilt: float, seed: int, pid: bool, delay: float, **changes: Any) -> PolishingConfig:
     flaws = Imperfections.p3(pid=pid, computation_delay=delay).model_dump()
     fixed = {"controller": controller, "seed": seed, "duration": 4.0, "table": {"tilt": tilt}, "imperfections": flaws}
-    return merged(merged(CASES["ablation"], fixed), changes)
+    return merged(merged(STUDY.case("ablation"), fixed), changes)
 
 
 @cache
@@ -141,15 +142,18 @@ def test_the_controller_is_told_the_delays_of_its_robot_and_their_error() -> Non
 
 def test_the_report_shows_ours_beside_the_papers_and_counts_failures() -> None:
     def fake(controller: str, variant: str, seed: int, force: float | None) -> Result:
-        config = merged(CASES["tables-2-3-4"], {"controller": controller, "variant": variant, "seed": seed})
+        config = merged(STUDY.case("tables-2-3-4"), {"controller": controller, "variant": variant, "seed": seed})
         if force is None:
             return Result(config, (), "stopped")
-        return Result(config, (Metric("E_λ", force, "N", 2.04), Metric("E_τ", 0.5 * force, "N·m")))
+        metrics = (Metric("E_λ", force, "N"), Metric("E_τ", 0.5 * force, "N·m"))
+        return Result(config, STUDY.cases["tables-2-3-4"].beside(config, metrics))
 
     runs = [fake("force-feedback-mpc", "PID", seed, force) for seed, force in enumerate((2.0, 4.0, None))]
     runs += [fake("force-feedback-mpc", "no PID", seed, force) for seed, force in enumerate((7.0, 6.0, 5.0))]
-    text = report(runs)
+    text = paper_tables(STUDY, summarised(STUDY, runs))
     assert "| E_λ, N, mean | 3.00 ± 1.4 (2.04) |" in text  # of the two that ended, n − 1
     assert "| runs that means and worst are of | 2 |" in text
     assert "| failed, one-sided 95 % bound | 1 of 3: ≤ 86 % |" in text
-    assert "| 3.50 ± 2.1, n = 2 (8.51) |" in text  # Table IV: pairs of which both ended: 7 − 2 and 6 − 4
+    assert (
+        "| ΔE_λ, N, mean | 3.50 ± 2.1, n = 2 (8.51) |" in text
+    )  # Table IV: pairs of which both ended: 7 − 2 and 6 − 4

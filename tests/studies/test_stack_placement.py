@@ -13,9 +13,9 @@ from pliant.errors import PliantError
 from pliant.references.postures.posture import UnreachableError
 from pliant.robot import Robot
 from pliant.robots.description import set_limits
-from pliant.studies.polishing.cases import CASES as POLISHING
+from pliant.studies.polishing import STUDY as POLISHING
+from pliant.studies.stack import STUDY as STACK
 from pliant.studies.stack.build import build
-from pliant.studies.stack.config import CASES
 from pliant.studies.stack.config import Path as ToolPath
 from pliant.studies.stack.placement import motion, placed
 
@@ -83,7 +83,7 @@ def test_what_is_no_arm_is_refused_in_a_sentence(robot: str | None, says: str, t
 
 
 def test_the_wall_stands_across_the_placed_path() -> None:
-    config = CASES["figure8-wall"].model_copy(update={"robot": "iiwa14", "duration": SHORT})
+    config = STACK.case("figure8-wall").model_copy(update={"robot": "iiwa14", "duration": SHORT})
     experiment = build(config)
     assert any("scaled by" in note for note in experiment.robot.notes)
     (wall,) = experiment.plant.scene.things  # type: ignore[attr-defined]
@@ -92,13 +92,13 @@ def test_the_wall_stands_across_the_placed_path() -> None:
 
 
 def test_locked_joints_are_replaced_as_a_whole_or_emptied() -> None:
-    config = next(iter(POLISHING.values()))
+    config = POLISHING.case("ideal")
     assert config.locked is None
     assert merged(config, parse_assignments(["locked={}"])).locked == {}
     assert merged(config, parse_assignments(["locked={A5=0.1}"])).locked == {"A5": 0.1}
     assert merged(config, parse_assignments(["locked=none"])).locked is None
     nested = merged(
-        CASES["figure8-wall"], parse_assignments(["wall.x=0.05", "control.tasks.ee.translation.range=0.05"])
+        STACK.case("figure8-wall"), parse_assignments(["wall.x=0.05", "control.tasks.ee.translation.range=0.05"])
     )
     assert nested.wall is not None
     assert nested.wall.stiffness == 1e4  # the rest of a table stays
@@ -108,6 +108,6 @@ def test_locked_joints_are_replaced_as_a_whole_or_emptied() -> None:
 
 @pytest.mark.parametrize(("robot", "joints"), [("iiwa14", 6), ("iiwa7", 7), ("panda", 7), ("lwr4", 7), ("ur5e", 6)])
 def test_only_the_robot_of_the_paper_has_a_joint_locked(robot: str, joints: int) -> None:
-    config = merged(next(iter(POLISHING.values())), {"robot": robot})
+    config = merged(POLISHING.case("ideal"), {"robot": robot})
     assert config.robot_model().n == joints
     assert merged(config, {"locked": {}}).robot_model().n >= joints

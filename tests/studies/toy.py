@@ -15,6 +15,7 @@ import numpy as np
 from pliant.errors import RunFailedError
 from pliant.experiments import registry
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
+from pliant.experiments.case import Case, seeded
 from pliant.experiments.config import Config
 from pliant.experiments.tuning import Range, Tuning
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
@@ -89,14 +90,12 @@ class ToyStudy(Study[ToyConfig]):
     title = "A toy"
     controllers = ("idle", "other")
     cases = {  # noqa: RUF012
-        name.replace(" ", "-"): ToyConfig(
-            case=name.replace(" ", "-"), controller="idle", robot="leg3", duration=0.3, behaviour=name
+        name.replace(" ", "-"): Case(
+            ToyConfig(case=name.replace(" ", "-"), controller="idle", robot="leg3", duration=0.3, behaviour=name),
+            draws=seeded(2),
         )
         for name in ("fine", "slow", "physics", "bug", "dies", "dies once")
     }
-
-    def runs(self, case: str, seeds: int | None = None) -> Sequence[ToyConfig]:
-        return [self.case(case).model_copy(update={"seed": seed}) for seed in range(seeds or 2)]
 
     def shows(self, config: ToyConfig) -> bool:
         return False

@@ -102,7 +102,7 @@ def test_a_controller_from_a_file_runs_with_its_parameters_units_and_needs(tmp_p
 def test_a_controller_from_a_module_is_swept_over_two_processes(tmp_path: Path) -> None:
     (tmp_path / "my_control.py").write_text(MINE)
     done = pliant(
-        "study", "haptic", "--case", "random", "--seeds", 2, "--jobs", 2, "--set", "controller=my_control:Spring",
+        "compare", "haptic", "--case", "random", "--seeds", 2, "--jobs", 2, "--controllers", "my_control:Spring",
         "--set", "duration=0.1", "--set", "checks=[]",
         "--metric", "my_control:strongest", "--out", "out", cwd=tmp_path,
     )  # fmt: skip

@@ -142,9 +142,12 @@ def study(
         _refuse("--resume", rest | {"--case": case, "--set": set_, "--out": out})
         resume_command(_out, _err, resume, name, jobs, scheduler)
         return
-    own = (f"own_metrics={json.dumps(metric)}",) if metric else ()
-    request = Request(name or "stack", tuple(case or ()), seeds, (*(set_ or ()), *own), logs)
+    request = Request(name or "stack", tuple(case or ()), seeds, (*(set_ or ()), *_own(metric)), logs)
     study_command(_out, _err, request, out, jobs, scheduler)
+
+
+def _own(metric: list[str] | None) -> tuple[str, ...]:
+    return (f"own_metrics={json.dumps(metric)}",) if metric else ()
 
 
 def _refuse(option: str, others: Mapping[str, object]) -> None:
@@ -274,6 +277,7 @@ def compare(
     case: Annotated[str | None, typer.Option(help="Variant of the task, or case of the study.")] = None,
     seeds: Annotated[int, typer.Option(min=1, help="Seeds of each.")] = 3,
     jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
+    metric: Metrics = None,
     out: Out = None,
     set_: Sets = None,
 ) -> None:
@@ -287,7 +291,7 @@ def compare(
     if not names:
         raise ConfigError("--controllers needs at least one name, for example --controllers offset-free-mpc,haptic")
     cases = (case or next(iter(get_study(target).cases)),)
-    request = Request(target, cases, seeds, tuple(set_ or ()), controllers=names)
+    request = Request(target, cases, seeds, (*(set_ or ()), *_own(metric)), controllers=names)
     study_command(_out, _err, request, out or study_folder(target) / "compare", jobs, None)
 
 

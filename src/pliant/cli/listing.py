@@ -53,7 +53,7 @@ def _studies() -> Table:
     table = Table("study", "case", "controller", title="studies", title_justify="left")
     for name in study_names():
         study = get_study(name)
-        for index, config in enumerate(study.cases.values()):
+        for index, config in enumerate(case.config for case in study.cases.values()):
             table.add_row(name if index == 0 else "", config.case, config.controller)
         table.add_section()
     return table

@@ -8,6 +8,7 @@ from typing import Any
 
 from rich.console import Console
 
+from pliant.cli.paper_tables import paper_tables
 from pliant.cli.progress import count_bar
 from pliant.cli.report import print_results, save_summary
 from pliant.cli.run import study_folder
@@ -127,7 +128,8 @@ def _finish(
     """Writes and prints what all runs say together; whoever interrupted does not want to wait for figures."""
     summary = save_summary(study, results, folder)
     report = folder / "report.md"
-    parts = (f"# {study.title}\n", study.report(results), summary_markdown(summarised(study, results)))
+    rows = summarised(study, results)
+    parts = (f"# {study.title}\n", paper_tables(study, rows), summary_markdown(rows))
     write_text(report, "\n".join(part for part in parts if part))
     print_results(console, study, results)
     drawn = study.summary_figures(results, folder) if figures else []

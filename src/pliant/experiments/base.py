@@ -1,122 +1,29 @@
-"""What a study is: typed cases, a way to build each, metrics from its log, and figures."""
+"""What a study is: cases, a way to build each of their runs, metrics from its log, and figures."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Generic
 
-from pydantic import Field, field_validator, model_validator
-
-from pliant.controllers.joint_limits import JointLimitsConfig
-from pliant.errors import ConfigError, PliantError, options
-from pliant.experiments.config import Config
-from pliant.experiments.own_metrics import find_metric
+from pliant.configuration import merged
+from pliant.errors import ConfigError, options
+from pliant.experiments.base_config import CaseConfig as CaseConfig
+from pliant.experiments.base_config import check_windows as check_windows
+from pliant.experiments.case import C, Case, Row, row_runs
+from pliant.experiments.result import Result as Result
+from pliant.experiments.row_keys import refuse_row_keys
 from pliant.telemetry.log import Log
+from pliant.telemetry.plots.style import save
 from pliant.telemetry.summary import Metric
 from pliant.wiring.experiment import Experiment as Experiment
 from pliant.wiring.registry import controllers
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from pliant.experiments.tuning import Tuning
-
-
-MOST_STEPS = 10**8
-"""of a run, of the control and of the physics"""
-
-MOST_STEPS_PER_PERIOD = 1000
-"""of the physics: between two commands; a run with more of them does not end while anyone waits"""
-
-
-class CaseConfig(Config):
-    """What every case of every study has."""
-
-    case: str = Field(description="name of the case")
-    controller: str = Field(description="name of the controller")
-    robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
-    locked: dict[str, float] | None = Field(
-        default=None,
-        description="joint → angle at which it is fixed, replaced as a whole; none: what the catalogue locks; {}: none",
-        json_schema_extra={"unit": "rad"},
-    )
-    seed: int = Field(default=0, ge=0, description="of every random draw")
-    duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
-    joint_limits: JointLimitsConfig | None = Field(
-        default=None, description="springs that keep the joints off their limits, round any controller; none: without"
-    )
-    variant: str = Field(
-        default="", description="what distinguishes this run from others of the same case and controller"
-    )
-    own_metrics: tuple[str, ...] = Field(
-        default=(), description="metrics beside the study's: names, my_module:metric or my_file.py:metric"
-    )
-
-    @field_validator("own_metrics")
-    @classmethod
-    def _are_metrics(cls, names: tuple[str, ...]) -> tuple[str, ...]:
-        try:
-            for name in names:
-                find_metric(name)
-        except PliantError as error:
-            raise ValueError(str(error)) from None
-        return names
-
-    @property
-    def control_by_name(self) -> bool:
-        """Whether `control` holds a table for each controller, by its name; otherwise it is of the one that runs."""
-        return False
-
-    @property
-    def clock(self) -> Mapping[str, float]:
-        """Name → s of the steps that a run is made of; a run that would not end for years is refused by them."""
-        return {}
-
-    @property
-    def windows(self) -> Mapping[str, tuple[float, float]]:
-        """What is measured → s, begin and end of the time in which it is; see `check_windows`."""
-        return {}
-
-    @model_validator(mode="after")
-    def _comes_to_an_end(self) -> Self:
-        for name, step in self.clock.items():
-            if not 1.0 <= self.duration / step * (1.0 + 1e-9) <= MOST_STEPS:
-                raise ValueError(
-                    f"a run takes 1 to {MOST_STEPS:.0e} steps; duration / {name} = {self.duration:g} s / {step:g} s"
-                )
-        if self.clock and max(self.clock.values()) > MOST_STEPS_PER_PERIOD * min(self.clock.values()) * (1.0 + 1e-9):
-            steps = ", ".join(f"{name} {step:g} s" for name, step in self.clock.items())
-            raise ValueError(
-                f"steps of a run are within a factor of {MOST_STEPS_PER_PERIOD} of each other, got {steps}"
-            )
-        return self
-
-
-C = TypeVar("C", bound=CaseConfig)
-
-
-def check_windows(config: CaseConfig) -> None:
-    """Raises ConfigError if something would be measured at a time that is not part of the run."""
-    for name, (begin, end) in config.windows.items():
-        if not (0.0 <= begin < min(end, config.duration)):
-            raise ConfigError(
-                f"{name!r} would be measured from {begin:g} s to {end:g} s, which is no part of the run: it takes"
-                f" {config.duration:g} s; choose another duration or window"
-            )
-
-
-@dataclass(frozen=True)
-class Result:
-    """What came out of one run."""
-
-    config: CaseConfig
-    metrics: tuple[Metric, ...]
-    failure: str | None = None
-    """why it stopped early; None if it ran to its end"""
-    warnings: tuple[str, ...] = ()
-    log: Path | None = None
-    figures: tuple[Path, ...] = field(default=())
 
 
 class Study(ABC, Generic[C]):
@@ -125,8 +32,8 @@ class Study(ABC, Generic[C]):
     name: str
     title: str
     """one line, for people"""
-    cases: Mapping[str, C]
-    """name → its configuration; the first is the default"""
+    cases: Mapping[str, Case[C]]
+    """by name; the first is the default"""
     worst: Collection[str] = ()
     """names of metrics that the worst run of a row decides; of the others it shows the mean"""
 
@@ -139,20 +46,40 @@ class Study(ABC, Generic[C]):
         """Configuration of a case. Raises ConfigError, with the cases there are, if it does not exist."""
         if name not in self.cases:
             raise ConfigError(f"study {self.name!r} has no case {name!r}; {options(self.cases, name)}")
-        return self.cases[name]
+        return self.cases[name].config
 
-    def runs(self, case: str, seeds: int | None = None) -> Sequence[C]:
+    @property
+    def config_type(self) -> type[C]:
+        """Of the configuration of its runs."""
+        return type(next(iter(self.cases.values())).config)
+
+    def rows(self, base: C) -> Sequence[Row]:
+        """The rows of a case, whose configuration is this now."""
+        return self.cases[base.case].rows
+
+    def runs(self, case: str, seeds: int | None = None, changes: Mapping[str, Any] | None = None) -> Sequence[C]:
         """Every run of a case in the full study: baselines, variants and seeds.
 
         Args:
             case: name of the case.
             seeds: how many, where draws are random; None: as many as the study deems enough.
+            changes: of the case, nested; rows are made of the changed case.
+
+        Raises:
+            ConfigError: no such case, a value that breaks a rule, or a key that rows set themselves.
         """
-        return [self.case(case)]
+        given = changes or {}
+        base = merged(self.case(case), given)
+        made = [(row, row_runs(base, row, self.cases[case].draws, seeds)) for row in self.rows(base)]
+        refuse_row_keys(base, made, given)
+        return [run for _, runs in made for run in runs]
 
     def shows(self, config: C) -> bool:
         """Whether a run of the full study keeps its log and is drawn; the others leave their metrics only."""
-        return config.seed == 0 and not config.variant
+        case = self.cases.get(config.case)
+        row = None if case is None else case.row_of(config)
+        shown = not config.variant if row is None or row.shown is None else row.shown
+        return config.seed == 0 and shown
 
     @abstractmethod
     def build(self, config: C) -> Experiment:
@@ -160,7 +87,12 @@ class Study(ABC, Generic[C]):
 
     @abstractmethod
     def metrics(self, config: C, log: Log) -> tuple[Metric, ...]:
-        """Measures a run; the paper's number and the target stand beside where there is one."""
+        """Measures a run; nothing is simulated here. The paper's numbers and targets are the case's."""
+
+    def judged(self, config: C, log: Log) -> tuple[Metric, ...]:
+        """The metrics of a run with the paper's numbers and targets of its case."""
+        metrics, case = self.metrics(config, log), self.cases.get(config.case)
+        return metrics if case is None else case.beside(config, metrics)
 
     def verdict(self, config: C, metrics: Sequence[Metric]) -> str | None:
         """Why a run that reached its end counts as failed all the same; None if it does not."""
@@ -171,12 +103,13 @@ class Study(ABC, Generic[C]):
         """Draws one run."""
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
-        """Draws what only several runs together show."""
-        return []
-
-    def report(self, results: Sequence[Result]) -> str:
-        """Tables as the paper prints them, in Markdown, for the study's report; empty where there are none."""
-        return ""
+        """Draws what only several runs together show: the figures of each case of which there are runs."""
+        made: dict[str, Figure] = {}
+        for name, case in self.cases.items():
+            found = [result for result in results if result.config.case == name]
+            for figure in case.figures if found else ():
+                made |= figure(case, found)
+        return [save(figure, folder / f"{name}.png") for name, figure in made.items()]
 
     def tuning(self, controller: str, case: str | None = None) -> Tuning:
         """How the parameters of a controller are searched, on the robot and with the delays of a case (None: of the

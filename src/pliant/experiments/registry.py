@@ -33,7 +33,7 @@ def run_of(name: str, values: Mapping[str, Any]) -> tuple[Study[Any], CaseConfig
     """
     if name in _MODULES:
         study = get_study(name)
-        return study, validated(type(next(iter(study.cases.values()))), values)
+        return study, validated(study.config_type, values)
     task: tuple[Study[Any], CaseConfig] = importlib.import_module(_TASKS).whole(name, values)
     return task
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -143,7 +142,7 @@ def read_results(path: Path) -> tuple[Request, list[Run]]:
     try:
         about |= {name: tuple(about[name]) for name in ("cases", "assignments", "controllers")}
         request = TypeAdapter(Request).validate_python(about)
-        kind = type(next(iter(get_study(request.study).cases.values())))
+        kind = get_study(request.study).config_type
         return request, [_run(row, kind, path.parent) for row in table.to_pylist()]
     except Exception as error:  # an edited or damaged file may hold anything
         why = " ".join(str(error).split())
@@ -174,7 +173,8 @@ def _row(study: str, run: Run, folder: Path) -> dict[str, Any]:
     result = run.result
     config = result.config
     files = {"log": _inside(result.log, folder), "figures": [_inside(figure, folder) for figure in result.figures]}
-    exact = {"metrics": [asdict(metric) | {"value": _text(metric.value)} for metric in result.metrics], **files}
+    about = [{**asdict(metric), "value": _column(metric)} for metric in result.metrics]  # each value stands once
+    exact = {"metrics": about, **files}
     columns = {_column(metric): metric.value for metric in result.metrics}
     return columns | {
         "study": study,
@@ -203,19 +203,13 @@ def _run(row: dict[str, Any], kind: type[CaseConfig], folder: Path) -> Run:
         raise ValueError(f"the row of {said} has the configuration of {is_}")
     if row["status"] not in get_args(Status) or (row["status"] == "finished") != (row["failure"] is None):
         raise ValueError(f"status {row['status']!r} with failure {row['failure']!r}")
-    result = Result(
-        config, _METRICS.validate_python(exact["metrics"]), row["failure"], tuple(row["warnings"]), log, figures
-    )
+    metrics = _METRICS.validate_python([about | {"value": row[about["value"]]} for about in exact["metrics"]])
+    result = Result(config, metrics, row["failure"], tuple(row["warnings"]), log, figures)
     return Run(result, row["status"], float(row["wall [s]"]))
 
 
 def _column(metric: Metric) -> str:
     return f"{metric.name} [{metric.unit or '1'}]"
-
-
-def _text(value: float) -> float | str:
-    """JSON has no NaN and no infinity: both become text, which `float` reads."""
-    return float(value) if math.isfinite(value) else str(float(value))
 
 
 def _inside(path: Path | None, folder: Path) -> str | None:

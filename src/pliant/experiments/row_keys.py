@@ -6,33 +6,45 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pliant.errors import ConfigError
-from pliant.experiments.base import CaseConfig
+from pliant.experiments.base_config import CaseConfig
+from pliant.experiments.case import Row
 
-_ABSENT = object()
-_LABELS = ("controller", "variant", "seed")
-"""what a row is named after; setting one makes rows the same, not wrong"""
+Key = tuple[str, ...]
+_ONE = "`pliant run` makes one run with any value"
+_COUNTED = (("seed",), ("variant",))
+"""what every run has of its own: the case's seed is where they begin"""
 
 
-def refuse_row_keys(base: CaseConfig, rows: Sequence[CaseConfig], changes: Mapping[str, Any]) -> None:
-    """Refuses changes of a key to which some row gives a value of its own: its label would then be wrong.
+def refuse_row_keys(
+    base: CaseConfig, made: Sequence[tuple[Row, Sequence[CaseConfig]]], changes: Mapping[str, Any]
+) -> None:
+    """Refuses changes of a key to which a row, or one of its draws, gives a value of its own: it would be lost, and the
+    rows' labels would tell what is not so.
 
     Args:
-        base: the case.
-        rows: every run of it.
+        base: the case as it is now.
+        made: every row with its runs.
         changes: nested, meant for all of them.
 
     Raises:
         ConfigError: a row sets one of the keys.
     """
-    values = base.model_dump()
-    dumped = [row.model_dump() for row in rows]
+    values, total = base.model_dump(), sum(len(runs) for _, runs in made)
     for key in _leaves(changes):
-        own = [row for row in dumped if _at(row, key) != _at(values, key)]
-        if own and key[0] not in _LABELS:
+        if key in _COUNTED:
+            continue
+        own = 0
+        for row, runs in made:
+            if any(_overlap(key, set_) for set_ in _leaves(row.changed(base))):
+                own += len(runs)
+            else:
+                own += sum(_at(run.model_dump(), key) != _at(values, key) for run in runs)
+        if own:
             name = ".".join(key)
+            other = "`pliant compare` runs a case with any controllers" if key == ("controller",) else _ONE
             raise ConfigError(
-                f"{name!r} cannot be set for the whole case {base.case!r}: {len(own)} of its {len(rows)} runs have a"
-                " value of their own and are named after it; `pliant run` makes one run with any value"
+                f"{name!r} cannot be set for the whole case {base.case!r}: {own} of its {total} runs have a value of"
+                f" their own and are named after it; {other}"
             )
 
 
@@ -49,7 +61,11 @@ def refuse_same_names(runs: Sequence[CaseConfig]) -> None:
             )
 
 
-def _leaves(changes: Mapping[str, Any], above: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+def _overlap(one: Key, other: Key) -> bool:
+    return all(a == b for a, b in zip(one, other, strict=False))
+
+
+def _leaves(changes: Mapping[str, Any], above: Key = ()) -> Iterator[Key]:
     for name, value in changes.items():
         key = (*above, name)
         if isinstance(value, Mapping) and value:
@@ -61,6 +77,6 @@ def _leaves(changes: Mapping[str, Any], above: tuple[str, ...] = ()) -> Iterator
 def _at(values: Any, key: Sequence[str]) -> Any:
     for part in key:
         if not isinstance(values, Mapping) or part not in values:
-            return _ABSENT
+            return None
         values = values[part]
     return values

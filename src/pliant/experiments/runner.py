@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pliant import loop
+from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
 from pliant.experiments.own_metrics import own_metrics
 from pliant.experiments.verdict import StartNotes, physical_verdict
@@ -18,6 +19,7 @@ from pliant.signals import Tick
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import Log
 from pliant.telemetry.recorder import Recorder
+from pliant.telemetry.summary import Metric
 
 Progress = Callable[[float], None]
 """called with the share of the run that is done, 0…1"""
@@ -108,10 +110,18 @@ def _measured(
     if failure is not None:
         return Result(config, (), failure, wired.warnings, path)
     drawn = study.figures(config, wired, log, folder) if folder is not None and figures else []
-    measured = (*study.metrics(config, log), *own_metrics(config.own_metrics, config, log))
+    measured = _each_once((*study.judged(config, log), *own_metrics(config.own_metrics, config, log)))
     verdicts = (study.verdict(config, measured), physical_verdict(log, wired.robot))
     failure = "; ".join(verdict for verdict in verdicts if verdict) or None
     return Result(config, measured, failure, wired.warnings, path, tuple(drawn))
+
+
+def _each_once(metrics: tuple[Metric, ...]) -> tuple[Metric, ...]:
+    names = [metric.name for metric in metrics]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ConfigError(f"a run has each metric once; {twice} would be there twice: give your own other names")
+    return metrics
 
 
 class _Reporter:

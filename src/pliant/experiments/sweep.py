@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pliant.errors import ConfigError, PliantError
 from pliant.experiments.base import CaseConfig, Result, check_windows
@@ -14,7 +15,7 @@ from pliant.experiments.config import assigned, merged
 from pliant.experiments.pool import Lost, Pool, in_this_process
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, Run, key
-from pliant.experiments.row_keys import refuse_row_keys, refuse_same_names
+from pliant.experiments.row_keys import refuse_same_names
 from pliant.experiments.runner import run_case
 
 MOST_SEEDS = 100_000
@@ -47,11 +48,9 @@ def asked_runs(request: Request) -> list[CaseConfig]:
     runs: list[CaseConfig] = []
     for case in cases:
         if request.controllers:
-            rows: Sequence[CaseConfig] = compared(study.case(case), request.controllers, request.seeds or 1)
+            runs += compared(study.case(case), request.controllers, request.seeds or 1, changes)
         else:
-            rows = study.runs(case, request.seeds)
-        refuse_row_keys(study.case(case), rows, changes)
-        runs += [merged(config, changes) for config in rows]
+            runs += study.runs(case, request.seeds, changes)
     found = list({key(config): config for config in runs}.values())
     refuse_same_names(found)
     for config in found:
@@ -59,13 +58,12 @@ def asked_runs(request: Request) -> list[CaseConfig]:
     return found
 
 
-def compared(config: CaseConfig, controllers: Sequence[str], seeds: int) -> list[CaseConfig]:
-    """A case with each controller, on the same seeds, from the case's own on."""
-    return [
-        merged(config, {"controller": name, "seed": config.seed + seed})
-        for name in controllers
-        for seed in range(seeds)
-    ]
+def compared(
+    config: CaseConfig, controllers: Sequence[str], seeds: int, changes: Mapping[str, Any] | None = None
+) -> list[CaseConfig]:
+    """A case with each controller and the same changes, on the same seeds, from the case's own on."""
+    changed = [merged(config, {**(changes or {}), "controller": name}) for name in controllers]
+    return [merged(made, {"seed": made.seed + seed}) for made in changed for seed in range(seeds)]
 
 
 def check_buildable(study_name: str, config: CaseConfig) -> None:

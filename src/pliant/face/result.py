@@ -88,7 +88,7 @@ class Comparison:
     @property
     def metrics(self) -> Mapping[str, Mapping[str, Metric]]:
         """Controller → name → metric over its seeds."""
-        return {case.controller: {metric.name: metric for metric in case.metrics} for case in self.summary.cases}
+        return {case.name: {metric.name: metric for metric in case.metrics} for case in self.summary.cases}
 
     def table(self) -> str:
         """Every controller's metrics, and how many of its runs failed, as text."""

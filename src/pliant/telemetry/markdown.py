@@ -15,7 +15,7 @@ def summary_markdown(summary: Summary) -> str:
     for case in summary.cases:
         lines += _rows(case)
     remarks = [
-        f"- {case.case}, {case.controller}: {text}"
+        f"- {case.case}, {case.name}: {text}"
         for case in summary.cases
         for text in (failed_text(case), case.note)
         if text
@@ -32,7 +32,7 @@ def _rows(case: Case) -> list[str]:
         value = f"**{value_text(metric)}**" if metric.met is False else value_text(metric)
         cells = (
             case.case,
-            case.controller,
+            case.name,
             metric.name,
             value,
             number(metric.paper),

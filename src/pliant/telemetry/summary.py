@@ -63,6 +63,13 @@ class Case:
     seeds: tuple[int, ...] = ()
     note: str = ""
     """choices that the reader should know"""
+    variant: str = ""
+    """label of the row, where a controller has several"""
+
+    @property
+    def name(self) -> str:
+        """Controller and label, for people."""
+        return f"{self.controller} ({self.variant})" if self.variant else self.controller
 
     def metric(self, name: str) -> Metric:
         """The metric of that name. Raises KeyError if there is none."""
@@ -153,13 +160,15 @@ def _worst(found: Sequence[Metric]) -> Metric:
 def _case_to_json(case: Case) -> dict[str, Any]:
     content: dict[str, Any] = {
         "case": case.case,
-        "controller": case.controller,
+        "controller": case.name,
         "metrics": {metric.name: _metric_to_json(metric) for metric in case.metrics},
         "runs": case.runs,
         "failed": len(case.failures),
         "failure": list(case.failures),
         "seeds": list(case.seeds),
     }
+    if case.variant:
+        content["row"] = {"controller": case.controller, "variant": case.variant}
     if case.note:
         content["note"] = case.note
     return content
@@ -198,9 +207,11 @@ def _case_from_json(content: dict[str, Any]) -> Case:
         )
         for name, about in content["metrics"].items()
     )
+    row = content.get("row", {"controller": content["controller"]})
     return Case(
         case=content["case"],
-        controller=content["controller"],
+        controller=row["controller"],
+        variant=row.get("variant", ""),
         metrics=metrics,
         runs=content.get("runs", 1),
         failures=tuple(content.get("failure", ())),

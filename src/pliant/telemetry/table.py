@@ -24,7 +24,7 @@ def summary_table(summary: Summary) -> Table:
     title = f"{summary.study} · pliant {summary.version}" + ("" if summary.seed is None else f" · seed {summary.seed}")
     table = Table(title=title, title_justify="left", title_style="bold", header_style="bold", expand=False)
     if single := len(summary.cases) == 1:
-        table.title = f"{title} · {summary.cases[0].case} · {summary.cases[0].controller}"
+        table.title = f"{title} · {summary.cases[0].case} · {summary.cases[0].name}"
     metrics = [metric for case in summary.cases for metric in case.metrics]
     columns = _Columns(
         paper=any(metric.paper is not None for metric in metrics),
@@ -106,7 +106,7 @@ def failed_text(case: Case) -> str:
 
 def _add_case(table: Table, case: Case, columns: _Columns, single: bool) -> None:
     if not single:
-        table.add_row(Text(f"{case.case} · {case.controller}", style="bold"))
+        table.add_row(Text(f"{case.case} · {case.name}", style="bold"))
     indent = "" if single else "  "
     for metric in case.metrics:
         missed = metric.met is False

@@ -128,9 +128,8 @@ def _model(log: Log) -> tuple[Any, Robot, Scene | None]:
     info = log.info
     if info.study in study_names():
         study = get_study(info.study)
-        kind = type(next(iter(study.cases.values())))
         try:
-            built = study.build(validated(kind, info.config))
+            built = study.build(validated(study.config_type, info.config))
         except PliantError:
             built = None  # a log of another version: its configuration is not today's
         physics = None if built is None else physics_of(built.plant)

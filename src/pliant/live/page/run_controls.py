@@ -163,7 +163,7 @@ class RunControls:
         if self._studies.value == self._study or not self._mine(event):
             return
         study = get_study(self._studies.value)
-        self.start(study.name, next(iter(study.cases.values())))
+        self.start(study.name, study.case(next(iter(study.cases))))
 
     def _choose_case(self, event: viser.GuiEvent[Any]) -> None:
         if self._config is None or self._cases.value == self._config.case or not self._mine(event):
@@ -174,7 +174,8 @@ class RunControls:
         config = self._config
         if config is None or self._controllers.value == config.controller or not self._mine(event):
             return
-        plain = get_study(self._study).cases.get(config.case, config)
+        study = get_study(self._study)
+        plain = study.case(config.case) if config.case in study.cases else config
         changes: dict[str, Any] = {"controller": self._controllers.value}
         if "control" in type(config).model_fields and not _same_kind(config.controller, self._controllers.value):
             changes["control"] = {}  # parameters of another controller

@@ -28,7 +28,7 @@ def run(n: int = 20000) -> dict[str, Any]:
         CPU and wall time per step in µs: {"steps", "unit", "cpu": {"median", "p90", "p99", "max"}, "wall": {...}}. Run
         it with OMP_NUM_THREADS=1 on an idle machine.
     """
-    config = CASES["floor"]
+    config = CASES["floor"].config
     config = config.model_copy(update={"steps": _to_and_fro(n * config.period)})
     robot = robot_of(config)
     entry, parameters = config.entry, config.controller_parameters(robot)
@@ -56,7 +56,7 @@ def run(n: int = 20000) -> dict[str, Any]:
 
 def _to_and_fro(duration: float) -> tuple[Any, ...]:
     """The floor case's first step, then a target and a force that change twice a second."""
-    first = CASES["floor"].steps[0]
+    first = CASES["floor"].config.steps[0]
     later = [
         first.model_copy(
             update={"time": 0.5 * i, "target": (0.05 + 0.1 * (i % 2), 0.0, 0.017), "force": (0.0, 0.0, 30.0 + i % 3)}

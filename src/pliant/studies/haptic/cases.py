@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from pliant.experiments.case import Case
 from pliant.studies.haptic.cases_ball import BALL_CASES
 from pliant.studies.haptic.cases_box import BOX_CASES
 from pliant.studies.haptic.cases_floor import FLOOR_CASES
 from pliant.studies.haptic.cases_online import ONLINE_CASES
 from pliant.studies.haptic.config import HapticConfig
 
-CASES: Mapping[str, HapticConfig] = {
-    config.case: config for config in (*FLOOR_CASES, *BOX_CASES, *BALL_CASES, *ONLINE_CASES)
+CASES: Mapping[str, Case[HapticConfig]] = {
+    case.config.case: case for case in (*FLOOR_CASES, *BOX_CASES, *BALL_CASES, *ONLINE_CASES)
 }
-"""name → configuration; the first is what `pliant run haptic` does"""
+"""by name; the first is what `pliant run haptic` does"""

@@ -15,6 +15,7 @@ from pliant.studies.haptic.config import (
     Planner,
     Step,
 )
+from pliant.studies.haptic.rows import plain
 
 _X = 0.12  # m, of the ball
 _Z = 0.21  # m: 10 mm below the foot's height when it touches the top
@@ -155,4 +156,4 @@ FLOOR_ACTUATOR = HapticConfig(
     ),
 )
 
-BALL_CASES = (BALL, BALL_FREE, BALL_UNREACHABLE, BALL_ACTUATOR, FLOOR_ACTUATOR)
+BALL_CASES = tuple(plain(config) for config in (BALL, BALL_FREE, BALL_UNREACHABLE, BALL_ACTUATOR, FLOOR_ACTUATOR))

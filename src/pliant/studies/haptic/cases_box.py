@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pliant.studies.haptic.config import BoxConfig, Check, Environment, Floor, HapticConfig, Material, Step
+from pliant.studies.haptic.rows import plain
 
 _ROUGH = Floor(material=Material())
 
@@ -73,4 +74,4 @@ BOX_SHANK = HapticConfig(
     snapshots=(0.0, 0.9, 1.8, 2.8, 5.8),
 )
 
-BOX_CASES = (BOX_TOP, BOX_TIP, BOX_SHANK)
+BOX_CASES = tuple(plain(config) for config in (BOX_TOP, BOX_TIP, BOX_SHANK))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pliant.studies.haptic.config import Check, HapticConfig, Hardware, Step
+from pliant.studies.haptic.rows import plain
 
 _Z = 0.017  # m: the target lies 3 mm below the surface
 _STEPS = (
@@ -42,4 +43,4 @@ FLOOR_NOISE = HapticConfig(
     ),
 )
 
-FLOOR_CASES = (FLOOR, FLOOR_NOISE)
+FLOOR_CASES = tuple(plain(config) for config in (FLOOR, FLOOR_NOISE))

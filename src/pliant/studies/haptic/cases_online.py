@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pliant.experiments.case import Case, Row
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.studies.haptic.config import (
     Check,
@@ -14,6 +15,9 @@ from pliant.studies.haptic.config import (
     Planner,
     Step,
 )
+from pliant.studies.haptic.delays import delay_figure, delay_rows
+from pliant.studies.haptic.parameters import parameter_figure, parameter_rows
+from pliant.studies.haptic.rows import drawn, plain
 
 _ROUGH = Environment(floor=Floor(material=Material()))
 
@@ -113,4 +117,10 @@ PARAMETERS = HapticConfig(
     ),
 )
 
-ONLINE_CASES = (ONLINE, DELAY, TARGET_SEQUENCE, RANDOM, PARAMETERS)
+ONLINE_CASES = (
+    drawn(ONLINE, seeds=3),
+    Case(DELAY, (Row(), *delay_rows()), figures=[delay_figure]),
+    plain(TARGET_SEQUENCE),
+    drawn(RANDOM, seeds=20),
+    Case(PARAMETERS, (Row(), *parameter_rows()), figures=[parameter_figure]),
+)

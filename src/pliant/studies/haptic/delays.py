@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pliant.experiments.base import Result
-from pliant.experiments.config import merged
-from pliant.studies.haptic.config import HapticConfig, Material
+from pliant.experiments.case import Case, Row
+from pliant.experiments.result import Result
+from pliant.studies.haptic.config import Material
 from pliant.telemetry.plots import style
 
 if TYPE_CHECKING:
@@ -36,9 +36,9 @@ _STEADY_SPEED = 0.05  # m/s
 _BOUNDED_FORCE = 300.0  # N, F_max along z: what hits harder was not kept in bounds
 
 
-def delay_runs(config: HapticConfig) -> list[HapticConfig]:
+def delay_rows() -> list[Row]:
     """Every surface, place and delay."""
-    runs: list[HapticConfig] = []
+    rows: list[Row] = []
     for surface, material in SURFACES.items():
         for place, (fields, more) in PLACES.items():
             for delay in DELAYS:
@@ -46,10 +46,10 @@ def delay_runs(config: HapticConfig) -> list[HapticConfig]:
                     **more,
                     "environment": {"floor": {"material": material.model_dump()}},
                     "hardware": {**more.get("hardware", {}), **dict.fromkeys(fields, 1e-3 * delay)},
-                    "variant": f"{surface} · {place} · {delay} ms",
                 }
-                runs.append(merged(config, changes))
-    return runs
+                label = f"{surface} · {place} · {delay} ms"
+                rows.append(Row(label, changes=changes, group=(surface, place), value=float(delay)))
+    return rows
 
 
 def stable(result: Result) -> bool:
@@ -61,24 +61,30 @@ def stable(result: Result) -> bool:
     return calm and values["peak force"] <= _BOUNDED_FORCE and values["|W| over F_max"] <= 1.0
 
 
-def largest_stable(results: Sequence[Result]) -> dict[tuple[str, str], float]:
+def largest_stable(case: Case[Any], results: Sequence[Result]) -> dict[tuple[str, ...], float]:
     """(surface, place) → the largest delay, ms, up to which every tried one was stable; 0: none."""
-    found: dict[tuple[str, str], float] = {}
-    verdicts = {r.config.variant: stable(r) for r in results if r.config.case == "delay" and r.config.variant}
-    for surface in SURFACES:
-        for place in PLACES:
-            largest = 0
-            for delay in DELAYS:
-                if not verdicts.get(f"{surface} · {place} · {delay} ms", False):
-                    break
-                largest = delay
-            found[surface, place] = float(largest)
+    verdicts = {(row.group, row.value): stable(run) for run in results if (row := case.row_of(run.config)) is not None}
+    found: dict[tuple[str, ...], float] = {}
+    for row in case.rows:
+        if row.value is not None and verdicts.get((row.group, row.value), False):
+            if found.get(row.group, 0.0) == _before(row.value):
+                found[row.group] = row.value
+        elif row.group:
+            found.setdefault(row.group, 0.0)
     return found
 
 
-def delay_figure(results: Sequence[Result]) -> Figure:
-    """The largest stable delay as bars, a group per surface."""
-    largest = largest_stable(results)
+def _before(delay: float) -> float:
+    """The next smaller delay that is tried; 0 before the first."""
+    place = DELAYS.index(int(delay))
+    return float(DELAYS[place - 1]) if place else 0.0
+
+
+def delay_figure(case: Case[Any], results: Sequence[Result]) -> Mapping[str, Figure]:
+    """The largest stable delay as bars, a group per surface; none without a delayed run."""
+    if all(row is None or row.value is None for row in map(case.row_of, (result.config for result in results))):
+        return {}
+    largest = largest_stable(case, results)
     made = style.figure(8.0, 3.8, "Largest delay that stays stable and bounded (tried: 1 to 50 ms)")
     ax = made.add_subplot()
     style.dress(ax, "", "delay, ms")
@@ -91,4 +97,4 @@ def delay_figure(results: Sequence[Result]) -> Figure:
         ax.bar_label(bars, labels, fontsize=style.SMALL, color=style.INK)
     ax.set_xticks(np.arange(len(SURFACES)), list(SURFACES))
     style.legend(ax, outside=True)
-    return made
+    return {"delay": made}

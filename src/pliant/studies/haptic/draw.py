@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pliant.experiments.base import Experiment, Result
+from pliant.experiments.base import Experiment
 from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
 from pliant.studies.haptic.config import HapticConfig
-from pliant.studies.haptic.delays import delay_figure
 from pliant.studies.haptic.measure import Signals
-from pliant.studies.haptic.parameters import parameter_figure
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
 from pliant.telemetry.plots.pictures import picture_row
@@ -110,13 +107,3 @@ def _snapshot(signals: Signals, plant: MujocoPlant, index: int) -> Snapshot:
 
 def _thinned(points: Array, most: int = 300) -> Array:
     return points[:: max(1, len(points) // most)]
-
-
-def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
-    """The delays that each environment bears, and what each parameter does, where they were run."""
-    drawn: list[Path] = []
-    for case, make in (("delay", delay_figure), ("parameters", parameter_figure)):
-        found = [result for result in results if result.config.case == case and result.config.variant]
-        if found:
-            drawn.append(save(make(found), folder / f"{case}.png"))
-    return drawn

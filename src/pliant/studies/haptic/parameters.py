@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pliant.experiments.base import Result
-from pliant.experiments.config import merged, parse_assignments
-from pliant.studies.haptic.config import HapticConfig, Material
+from pliant.experiments.case import Case, Row
+from pliant.experiments.config import parse_assignments
+from pliant.experiments.result import Result
+from pliant.studies.haptic.config import Material
 from pliant.telemetry.plots import style
 
 if TYPE_CHECKING:
@@ -41,34 +42,41 @@ PARAMETERS: tuple[Parameter, ...] = (
 SURFACES: Mapping[str, Material] = {"rigid": Material(), "soft": Material(stiffness=1e3, damping=1e2)}
 
 
-def parameter_runs(config: HapticConfig) -> list[HapticConfig]:
+def parameter_rows() -> list[Row]:
     """Every parameter's values on every surface."""
-    runs: list[HapticConfig] = []
+    rows: list[Row] = []
     for surface, material in SURFACES.items():
-        ground = merged(config, {"environment": {"floor": {"material": material.model_dump()}}})
+        ground = {"environment": {"floor": {"material": material.model_dump()}}}
         for parameter in PARAMETERS:
             for value in parameter.values:
-                changed = merged(ground, parse_assignments([parameter.key.format(value)]))
-                runs.append(changed.model_copy(update={"variant": f"{surface} · {parameter.label} · {value:g}"}))
-    return runs
+                changes = ground | parse_assignments([parameter.key.format(value)])
+                label = f"{surface} · {parameter.label} · {value:g}"
+                rows.append(Row(label, changes=changes, group=(surface, parameter.label), value=value))
+    return rows
 
 
-def parameter_figure(results: Sequence[Result]) -> Figure:
+def parameter_figure(case: Case[Any], results: Sequence[Result]) -> Mapping[str, Figure]:
     """Settling time of a force step up and down, against each parameter; crosses never settle."""
-    found = {r.config.variant: {m.name: m.value for m in r.metrics} for r in results if r.config.variant}
+    found: dict[tuple[tuple[str, ...], float], Mapping[str, float]] = {}
+    for result in results:
+        row = case.row_of(result.config)
+        if row is not None and row.value is not None:
+            found[row.group, row.value] = {metric.name: metric.value for metric in result.metrics}
+    if not found:
+        return {}
     made = style.figure(11.0, 4.8, "What each parameter does: steps from 10 to 15 N and back to 10 N")
     axes = made.subplots(2, 4).ravel()
     for ax, parameter in zip(axes, PARAMETERS, strict=True):
         _panel(ax, parameter, found)
     style.legend(axes[3], outside=True)
-    return made
+    return {"parameters": made}
 
 
-def _panel(ax: Axes, parameter: Parameter, found: Mapping[str, Mapping[str, float]]) -> None:
+def _panel(ax: Axes, parameter: Parameter, found: Mapping[tuple[tuple[str, ...], float], Mapping[str, float]]) -> None:
     style.dress(ax, parameter.label, "settle, s")
     x = np.arange(len(parameter.values))
     for index, (surface, name) in enumerate((s, n) for s in SURFACES for n in ("up", "down")):
-        runs = [found.get(f"{surface} · {parameter.label} · {value:g}", {}) for value in parameter.values]
+        runs = [found.get(((surface, parameter.label), value), {}) for value in parameter.values]
         y = np.array([run.get(name, np.nan) for run in runs])
         colour, finite = style.colour(index), np.isfinite(y)
         label = f"{surface}, {name}"

@@ -9,8 +9,6 @@ import numpy.typing as npt
 
 from pliant.spatial import Array
 from pliant.studies.polishing.config import FRAME, PolishingConfig
-from pliant.studies.polishing.paper import paper_number
-from pliant.studies.polishing.targets import targets_of
 from pliant.telemetry import metrics as of
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
@@ -50,12 +48,7 @@ def measure(config: PolishingConfig, log: Log) -> tuple[Metric, ...]:
     if "mpc/status" in log:
         found["KKT reached"] = (100.0 * float(np.mean(log["mpc/status"] == 0.0)), "%")
         found["iterations"] = (float(np.mean(log["mpc/iterations"])), "1")
-    targets = targets_of(config)
-    loop = config.imperfections.torque_loop.gain_p > 0.0
-    return tuple(
-        Metric(name, value, unit, paper_number(config.case, config.controller, name, loop), targets.get(name))
-        for name, (value, unit) in found.items()
-    )
+    return tuple(Metric(name, value, unit) for name, (value, unit) in found.items())
 
 
 def _first_peak(config: PolishingConfig, time: Array, force: Array) -> float:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
-from pliant.experiments.base import Experiment, Result, Study
+from pliant.experiments.base import Experiment, Study
 from pliant.experiments.tuning import Tuning
-from pliant.studies.polishing import draw, overview, tables
+from pliant.studies.polishing import draw
 from pliant.studies.polishing.build import build
-from pliant.studies.polishing.cases import CASES, runs_of
+from pliant.studies.polishing.cases import CASES
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.measure import WORST, measure
 from pliant.studies.polishing.tuning import tuning_of
@@ -25,12 +24,6 @@ class Polishing(Study[PolishingConfig]):
     cases = CASES
     worst = WORST
 
-    def runs(self, case: str, seeds: int | None = None) -> Sequence[PolishingConfig]:
-        return runs_of(self.case(case), seeds)
-
-    def shows(self, config: PolishingConfig) -> bool:
-        return config.seed == 0 and config.variant in ("", "PID", "no PID")
-
     def build(self, config: PolishingConfig) -> Experiment:
         return build(config)
 
@@ -40,14 +33,8 @@ class Polishing(Study[PolishingConfig]):
     def figures(self, config: PolishingConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, folder)
 
-    def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
-        return overview.summary_figures(results, folder)
-
     def tuning(self, controller: str, case: str | None = None) -> Tuning:
         return tuning_of(self.case(case or "tables-2-3-4"), controller)
-
-    def report(self, results: Sequence[Result]) -> str:
-        return tables.report(results)
 
 
 STUDY = Polishing()

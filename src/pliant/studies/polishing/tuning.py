@@ -13,7 +13,7 @@ from pliant.experiments.config import merged
 from pliant.experiments.tuning import Range, Tuning
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.config import PolishingConfig
-from pliant.studies.polishing.targets import BEST
+from pliant.studies.polishing.rows import BEST
 
 _FIRST_SEED = 1000  # far from those of the tables
 _DURATION = 5.0  # s, of which 2 s on the circle

@@ -1,4 +1,4 @@
-"""Typed configuration of the stack study, and its cases.
+"""Typed configuration of the stack study.
 
 Source of the task: [Stack] Tiseo et al. 2020, sec. III and Table I. What the paper leaves open (period, ramp, wall,
 pushes) is here, with the value chosen.
@@ -208,29 +208,3 @@ class StackConfig(CaseConfig):
         self.parameters()
         self.frames()
         return self
-
-
-_GAZEBO = Joints(friction=10.0, damping=1.0, compensation="gravity", velocity_filter=0.2)
-_HARDWARE = Joints(friction=0.5, damping=0.5, compensation="gravity+coriolis")
-_HARDWARE_LOOP: dict[str, Any] = {"period": 3e-3, "joints": _HARDWARE, "preset": "soft"}
-
-CASES: Mapping[str, StackConfig] = {
-    config.case: config
-    for config in (
-        StackConfig(case="figure8-wall", wall=Wall(), joints=_GAZEBO),
-        StackConfig(case="figure8-plain"),
-        StackConfig(case="figure8-gazebo", joints=_GAZEBO),
-        StackConfig(case="figure8-hardware", **_HARDWARE_LOOP),
-        StackConfig(case="figure8-pushed", **_HARDWARE_LOOP, pushes=Pushes()),
-        StackConfig(case="line-hardware", path=Path(kind="line"), **_HARDWARE_LOOP),
-        StackConfig(case="line-pushed", path=Path(kind="line"), pushes=Pushes(), **_HARDWARE_LOOP),
-        StackConfig(case="line-slow", path=Path(kind="line", peak_speed=0.4), **_HARDWARE_LOOP),
-        StackConfig(
-            case="rest-plain", path=Path(kind="hold"), pushes=Pushes(frame="flange", gap=(0.5, 0.6)), duration=10.0
-        ),
-        StackConfig(case="singular", path=Path(kind="stretch"), **_HARDWARE_LOOP),
-        StackConfig(case="calibration", retuning=Retuning(), joints=_GAZEBO),
-        StackConfig(case="balance", joints=_GAZEBO),
-    )
-}
-"""name → configuration; the first is what `pliant run` does"""

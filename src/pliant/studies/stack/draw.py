@@ -27,7 +27,6 @@ from pliant.telemetry.plots import (
     posture_difference,
     save,
     style,
-    sweep,
     task_path,
 )
 from pliant.telemetry.summary import Metric
@@ -35,8 +34,6 @@ from pliant.telemetry.summary import Metric
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BALANCE_FORCES = (0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0)
-"""N, strengths of the elbow's task that the balance case runs through"""
 _REFERENCE, _ACTUAL = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0)
 _CAMERA = Camera(look_at=(0.0, -0.30, 0.34), distance=1.35, azimuth=28.0, elevation=-12.0)
 
@@ -108,7 +105,7 @@ def _thinned(points: Array, most: int = 400) -> Array:
 
 
 def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
-    """Attractor, RMSE of every case beside the paper's, and the balance of elbow and tool."""
+    """The attractor, and the RMSE of every case beside the paper's."""
     files = [save(attractor_figure(), folder / "attractor.png")]
     main = [r for r in results if r.config.controller == "stack" and not r.config.variant and r.metrics]
     if groups := _rmse_groups(main):
@@ -118,9 +115,6 @@ def summary_figures(results: Sequence[Result], folder: Path) -> list[Path]:
                 folder / "rmse.png",
             )
         )
-    balance = [r for r in results if r.config.case == "balance" and r.metrics]
-    if len(balance) > 1:
-        files.append(save(_balance(balance), folder / "balance.png"))
     return files
 
 
@@ -131,24 +125,6 @@ def _rmse_groups(results: Sequence[Result]) -> dict[str, list[Metric]]:
         if errors and result.config.seed == 0:
             groups.setdefault(result.config.case, errors)
     return groups
-
-
-def _balance(results: Sequence[Result]) -> Figure:
-    forces = np.array([float(r.config.variant.removeprefix("elbow-").removesuffix("N")) for r in results])
-    curves = {axis: np.array([_value(r, f"RMSE {axis}") for r in results]) for axis in "xyz"}
-    order = np.argsort(forces)
-    ordered = {f"tool, {axis}": values[order] for axis, values in curves.items()}
-    return sweep(
-        forces[order],
-        ordered,
-        "F_max of the elbow's task, N",
-        "RMSE of the tool, mm",
-        "Tool error against the strength of the elbow's task",
-    )
-
-
-def _value(result: Result, name: str) -> float:
-    return next(metric.value for metric in result.metrics if metric.name == name)
 
 
 def attractor_figure() -> Figure:

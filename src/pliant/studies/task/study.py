@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pliant.configuration import merged, overlaid, validated
+from pliant.configuration import overlaid, validated
 from pliant.errors import ConfigError
 from pliant.experiments.base import Experiment, Result, Study
+from pliant.experiments.case import Case, Row, seeded
 from pliant.experiments.tuning import Tuning, nested
 from pliant.studies.task import draw
 from pliant.studies.task.build import build, planned
@@ -36,28 +37,25 @@ class TaskStudy(Study[TaskCase]):
     worst = WORST
 
     def __init__(self, name: str, cases: Mapping[str, TaskCase]) -> None:
-        self.name, self.cases = name, cases
-        first = next(iter(cases.values()))
-        self.title = first.description or "a contact task"
+        self.name = name
+        self.cases = {case: Case(config, (), _draws) for case, config in cases.items()}
+        self.title = next(iter(cases.values())).description or "a contact task"
 
-    def runs(self, case: str, seeds: int | None = None) -> Sequence[TaskCase]:
-        """Every combination of the values of `[sweep]`, with each seed."""
-        base = self.case(case)
-        sweep = dict(base.sweep)
-        count = seeds or int(sweep.pop("seeds", _SEEDS))
-        keys = list(sweep)
+    def rows(self, base: TaskCase) -> Sequence[Row]:
+        """Every combination of the values of `[sweep]`."""
+        sweep = {key: values for key, values in base.sweep.items() if key != "seeds"}
         for key, values in sweep.items():
             if not isinstance(values, list | tuple):
                 raise ConfigError(f"sweep.{key}: a list of values, got {values!r}")
-        found: list[TaskCase] = []
+        rows: list[Row] = []
         for values in itertools.product(*sweep.values()):
-            row = base
-            for key, value in zip(keys, values, strict=True):
-                row = merged(row, nested({key: value}))
-            label = ", ".join(f"{key} {value}" for key, value in zip(keys, values, strict=True) if key != "controller")
-            row = merged(row, {"variant": label})
-            found += [merged(row, {"seed": base.seed + seed}) for seed in range(count)]
-        return found
+            changes: dict[str, Any] = {}
+            for key, value in zip(sweep, values, strict=True):
+                changes = overlaid(None, changes, nested({key: value}))
+            named = [f"{key} {value}" for key, value in zip(sweep, values, strict=True) if key != "controller"]
+            controller = changes.pop("controller", None)
+            rows.append(Row(", ".join(named), controller, changes))
+        return rows
 
     def shows(self, config: TaskCase) -> bool:
         return config.seed == 0
@@ -91,6 +89,10 @@ class TaskStudy(Study[TaskCase]):
         made = planned(config)
         surface = true_surface(config, made.surface, made.path)
         return signals_of(log, config.tool.frame, surface.geometry, made.robot.torque_limit)
+
+
+def _draws(base: TaskCase, seeds: int | None) -> Sequence[Mapping[str, Any]]:
+    return seeded(int(base.sweep.get("seeds", _SEEDS)))(base, seeds)
 
 
 def whole(name: str, values: Mapping[str, Any]) -> tuple[TaskStudy, TaskCase]:

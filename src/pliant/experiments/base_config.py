@@ -1,0 +1,92 @@
+"""What every run of every study is configured by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Self
+
+from pydantic import Field, field_validator, model_validator
+
+from pliant.controllers.joint_limits import JointLimitsConfig
+from pliant.errors import ConfigError, PliantError
+from pliant.experiments.config import Config
+from pliant.experiments.own_metrics import find_metric
+
+MOST_STEPS = 10**8
+"""of a run, of the control and of the physics"""
+
+MOST_STEPS_PER_PERIOD = 1000
+"""of the physics: between two commands; a run with more of them does not end while anyone waits"""
+
+
+class CaseConfig(Config):
+    """What every case of every study has."""
+
+    case: str = Field(description="name of the case")
+    controller: str = Field(description="name of the controller")
+    robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
+    locked: dict[str, float] | None = Field(
+        default=None,
+        description="joint → angle at which it is fixed, replaced as a whole; none: what the catalogue locks; {}: none",
+        json_schema_extra={"unit": "rad"},
+    )
+    seed: int = Field(default=0, ge=0, description="of every random draw")
+    duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    joint_limits: JointLimitsConfig | None = Field(
+        default=None, description="springs that keep the joints off their limits, round any controller; none: without"
+    )
+    variant: str = Field(
+        default="", description="what distinguishes this run from others of the same case and controller"
+    )
+    own_metrics: tuple[str, ...] = Field(
+        default=(), description="metrics beside the study's: names, my_module:metric or my_file.py:metric"
+    )
+
+    @field_validator("own_metrics")
+    @classmethod
+    def _are_metrics(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        try:
+            for name in names:
+                find_metric(name)
+        except PliantError as error:
+            raise ValueError(str(error)) from None
+        return names
+
+    @property
+    def control_by_name(self) -> bool:
+        """Whether `control` holds a table for each controller, by its name; otherwise it is of the one that runs."""
+        return False
+
+    @property
+    def clock(self) -> Mapping[str, float]:
+        """Name → s of the steps that a run is made of; a run that would not end for years is refused by them."""
+        return {}
+
+    @property
+    def windows(self) -> Mapping[str, tuple[float, float]]:
+        """What is measured → s, begin and end of the time in which it is; see `check_windows`."""
+        return {}
+
+    @model_validator(mode="after")
+    def _comes_to_an_end(self) -> Self:
+        for name, step in self.clock.items():
+            if not 1.0 <= self.duration / step * (1.0 + 1e-9) <= MOST_STEPS:
+                raise ValueError(
+                    f"a run takes 1 to {MOST_STEPS:.0e} steps; duration / {name} = {self.duration:g} s / {step:g} s"
+                )
+        if self.clock and max(self.clock.values()) > MOST_STEPS_PER_PERIOD * min(self.clock.values()) * (1.0 + 1e-9):
+            steps = ", ".join(f"{name} {step:g} s" for name, step in self.clock.items())
+            raise ValueError(
+                f"steps of a run are within a factor of {MOST_STEPS_PER_PERIOD} of each other, got {steps}"
+            )
+        return self
+
+
+def check_windows(config: CaseConfig) -> None:
+    """Raises ConfigError if something would be measured at a time that is not part of the run."""
+    for name, (begin, end) in config.windows.items():
+        if not (0.0 <= begin < min(end, config.duration)):
+            raise ConfigError(
+                f"{name!r} would be measured from {begin:g} s to {end:g} s, which is no part of the run: it takes"
+                f" {config.duration:g} s; choose another duration or window"
+            )

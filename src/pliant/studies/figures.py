@@ -1,0 +1,97 @@
+"""Figures of many runs of a case, from what its rows say of themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pliant.experiments.case import Case
+from pliant.experiments.result import Result
+from pliant.spatial import Array
+from pliant.telemetry.plots import dots, sweep
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+CaseFigure = Callable[[Case[Any], Sequence[Result]], Mapping[str, "Figure"]]
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A metric that is drawn."""
+
+    name: str
+    label: str
+    """of its axis"""
+    file: str
+    """part of the file's name"""
+
+
+def against_value(metrics: Sequence[Drawn], label: str, title: str, log_x: bool = False) -> CaseFigure:
+    """The mean over runs against the rows' values, one curve per controller. Args: label: of the rows' values."""
+
+    def figure(case: Case[Any], results: Sequence[Result]) -> Mapping[str, Figure]:
+        name = case.config.case
+        return {f"{name}_{m.file}": _swept(case, results, m, label, f"{title}, {name}", log_x) for m in metrics}
+
+    return figure
+
+
+def in_rows(metrics: Sequence[Drawn], title: str) -> CaseFigure:
+    """A line per controller and row, a dot per run, with the row's target."""
+
+    def figure(case: Case[Any], results: Sequence[Result]) -> Mapping[str, Figure]:
+        name = case.config.case
+        return {f"{name}_rows_{m.file}": _rows(results, m, f"{title}, {name}") for m in metrics}
+
+    return figure
+
+
+def short(controller: str) -> str:
+    """A controller's name where all are of one kind."""
+    return controller.removesuffix("-mpc")
+
+
+def _swept(case: Case[Any], results: Sequence[Result], metric: Drawn, label: str, title: str, log_x: bool) -> Figure:
+    found: dict[str, dict[float, list[float]]] = {}
+    for result in results:
+        row = case.row_of(result.config)
+        if row is not None and row.value is not None:
+            found.setdefault(result.config.controller, {}).setdefault(row.value, []).append(_number(result, metric))
+    parameter = np.array(sorted({x for curve in found.values() for x in curve}))
+    most = max((len(runs) for curve in found.values() for runs in curve.values()), default=0)
+    curves = {
+        short(name): np.array([_padded(curve.get(x, []), most) for x in parameter]) for name, curve in found.items()
+    }
+    return sweep(parameter, curves, label, metric.label, title, log_x=log_x)
+
+
+def _rows(results: Sequence[Result], metric: Drawn, title: str) -> Figure:
+    rows: dict[str, list[float]] = {}
+    targets: dict[str, float] = {}
+    single = len({result.config.controller for result in results}) == 1
+    order = list(dict.fromkeys(result.config.controller for result in results))
+    for result in sorted(results, key=lambda result: order.index(result.config.controller)):
+        config = result.config
+        parts = (config.variant,) if single else (short(config.controller), config.variant)
+        label = ", ".join(part for part in parts if part)
+        rows.setdefault(label, []).append(_number(result, metric))
+        for one in result.metrics:
+            if one.name == metric.name and one.target is not None:
+                targets[label] = one.target
+    values: dict[str, Array] = {label: np.array(numbers) for label, numbers in rows.items()}
+    return dots(values, metric.label, title, targets)
+
+
+def _number(result: Result, metric: Drawn) -> float:
+    """NaN for a run that failed."""
+    if result.failure is not None:
+        return float("nan")
+    return next((one.value for one in result.metrics if one.name == metric.name), float("nan"))
+
+
+def _padded(runs: Sequence[float], size: int) -> list[float]:
+    return [*runs, *[float("nan")] * (size - len(runs))]

@@ -1,0 +1,125 @@
+"""The cases of the stack study, each with its rows, the paper's numbers and the targets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pliant.experiments.case import Case, Pair, Row, once, seeded
+from pliant.studies.stack.balance import balance_figure
+from pliant.studies.stack.config import Joints, Path, Pushes, Retuning, StackConfig, Wall
+
+JUDGED = "stack"
+"""the controller that the targets are for"""
+_ARMS = ("stack-paper", "spring", "operational-space")
+_PUSHED = seeded(10)
+_PASSIVE = {"storage margin of translation": -0.05}  # J
+_BALANCE_FORCES = (0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 75.0, 100.0)  # N, of the elbow's task
+
+_GAZEBO = Joints(friction=10.0, damping=1.0, compensation="gravity", velocity_filter=0.2)
+_HARDWARE = Joints(friction=0.5, damping=0.5, compensation="gravity+coriolis")
+_HARDWARE_LOOP: dict[str, Any] = {"period": 3e-3, "joints": _HARDWARE, "preset": "soft"}
+_TABLE_1 = {"stiff": "table-1-simulation", "soft": "table-1-robot"}
+"""a case's preset → that of the paper's Table I"""
+
+
+def _rows(config: StackConfig) -> list[Row]:
+    """The stack, it with Table I's parameters, and the baselines, all on the first seed but the stack itself."""
+    printed = {"preset": _TABLE_1[config.preset]}
+    return [
+        Row(draws=once if config.pushes is None else _PUSHED),
+        Row("table-1", changes=printed),
+        *(Row(controller=arm, shown=False) for arm in _ARMS),
+        Row("table-1", "stack-paper", printed),
+    ]
+
+
+def _xyz(x: float, y: float, z: float) -> dict[str, float]:
+    """mm, of the tool, in the axes of the path."""
+    return {"RMSE x": x, "RMSE y": y, "RMSE z": z}
+
+
+def _case(
+    config: StackConfig,
+    paper: Mapping[str, float] | None = None,
+    targets: Mapping[str, float] | None = None,
+    rows: Sequence[Row] | None = None,
+    **more: Any,
+) -> Case[StackConfig]:
+    rows = _rows(config) if rows is None else rows
+    return Case(config, rows, judged=JUDGED, paper=paper or {}, targets=_PASSIVE | dict(targets or {}), **more)
+
+
+def _no_wall(controller: str | None) -> Row:
+    """The same run without what stands in the way of x: its partner shows how much the free axes feel of the wall."""
+    return Row("no wall", controller, {"wall": None})
+
+
+def _elbow(force: float) -> Row:
+    """Another strength of the elbow's task; 0 N switches it off."""
+    own = {"stiffness": 0.0} if force == 0.0 else {"linear_range": min(0.01, 0.5 * force / 5000.0)}
+    changes = {"control": {"tasks": {"elbow": {"translation": {"force_max": force, **own}}}}}
+    return Row(f"elbow-{force:g}N", changes=changes, value=force)
+
+
+_WALL = StackConfig(case="figure8-wall", wall=Wall(), joints=_GAZEBO)
+_RESTING = Pushes(frame="flange", gap=(0.5, 0.6))
+
+# The paper's numbers: [Stack] sec. IV, mm; those of hardware, pushed and line were measured on its robot.
+_ALL = (
+    _case(
+        _WALL,
+        _xyz(13.2, 4.2, 5.5),
+        {"torque step": 15.0},
+        [*_rows(_WALL), *(_no_wall(controller) for controller in (None, *_ARMS))],
+        pairs=[
+            Pair(
+                f"RMSE {axis}: change by the wall", f"RMSE {axis}", "", "no wall", absolute=True, targets={JUDGED: 0.5}
+            )
+            for axis in "yz"
+        ],
+    ),
+    _case(
+        StackConfig(case="figure8-plain"),
+        _xyz(5.6, 4.6, 6.1),
+        _xyz(1.0, 1.2, 3.5) | {"torque variation": 100.0},
+    ),
+    _case(StackConfig(case="figure8-gazebo", joints=_GAZEBO), _xyz(5.6, 4.6, 6.1), _xyz(4.0, 2.5, 3.5)),
+    _case(StackConfig(case="figure8-hardware", **_HARDWARE_LOOP), _xyz(7.6, 1.5, 8.6), _xyz(3.5, 2.5, 2.5)),
+    _case(
+        StackConfig(case="figure8-pushed", **_HARDWARE_LOOP, pushes=Pushes()),
+        _xyz(20.3, 7.9, 9.1),
+        _xyz(5.0, 6.0, 5.5),
+    ),
+    _case(
+        StackConfig(case="line-hardware", path=Path(kind="line"), **_HARDWARE_LOOP),
+        _xyz(6.1, 4.6, 6.7),
+        _xyz(6.0, 3.0, 4.0),
+    ),
+    _case(
+        StackConfig(case="line-pushed", path=Path(kind="line"), pushes=Pushes(), **_HARDWARE_LOOP),
+        _xyz(9.6, 7.7, 7.3),
+        _xyz(8.0, 7.5, 5.5),
+    ),
+    _case(StackConfig(case="line-slow", path=Path(kind="line", peak_speed=0.4), **_HARDWARE_LOOP)),
+    _case(
+        StackConfig(case="rest-plain", path=Path(kind="hold"), pushes=_RESTING, duration=10.0),
+        targets={"joint speed at the end": 0.01},
+    ),
+    _case(
+        StackConfig(case="singular", path=Path(kind="stretch"), **_HARDWARE_LOOP),
+        targets={"torque step": 15.0},
+    ),
+    _case(
+        StackConfig(case="calibration", retuning=Retuning(), joints=_GAZEBO),
+        targets={"|h| over F_max": 1.0},
+        rows=[Row(draws=_PUSHED)],
+    ),
+    _case(
+        StackConfig(case="balance", joints=_GAZEBO),
+        rows=[_elbow(force) for force in _BALANCE_FORCES],
+        figures=[balance_figure],
+    ),
+)
+CASES: Mapping[str, Case[StackConfig]] = {case.config.case: case for case in _ALL}
+"""by name; the first is what `pliant run` does"""
