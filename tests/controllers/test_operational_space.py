@@ -10,7 +10,7 @@ from pliant.controllers.operational_space import OperationalSpace
 from pliant.errors import ConfigError, RobotError, ShapeError, SignalError
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference, TaskReference
-from pliant.spatial import Array
+from pliant.spatial import Array, exp3
 
 AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
@@ -91,3 +91,25 @@ def test_it_stays_within_the_limits_and_rejects_what_it_cannot_use(lwr4: Robot) 
         OperationalSpace(lwr4, "hand")
     with pytest.raises(ConfigError, match="stiffness must be finite and not negative, got -1"):
         OperationalSpace(lwr4, "flange", stiffness=-1.0)
+
+
+@pytest.mark.parametrize("rotates", [True, False])
+def test_the_arm_has_the_commanded_acceleration_while_it_moves(lwr4: Robot, rotates: bool) -> None:
+    """Absolute: ẍ of the arm is ẍ_d + k x̃ + 2 ζ √k ẋ̃, at a velocity, off the target, whatever the posture does."""
+    k, ratio = 300.0, 0.6
+    controller = OperationalSpace(lwr4, "flange", k, ratio, singularity_damping=1e-7)
+    q, v = lwr4.home + 0.02, np.array([0.3, -0.2, 0.4, 0.1, 0.2, -0.3, 0.1])
+    position, rotation = lwr4.placement(q, "flange")
+    error, turn = np.array([0.02, -0.01, 0.03]), np.array([0.03, 0.05, -0.02])
+    velocity = np.array([0.1, 0.2, -0.3, 0.4, -0.1, 0.2])
+    acceleration = np.array([0.5, -0.3, 0.2, 0.4, -0.6, 0.1])
+    wanted_rotation = exp3(turn) @ rotation if rotates else None
+    task = TaskReference("flange", position + error, wanted_rotation, velocity, acceleration)
+    command = command_at(controller, q, v, Reference(0.0, (task,), posture=lwr4.home + 0.1))
+    assert not command.clamped.any()
+    J = pin.computeFrameJacobian(lwr4.model, lwr4.model.createData(), q, lwr4.frame_id("flange"), AXES)
+    off = velocity - J @ v
+    wanted = acceleration + k * np.concatenate([error, turn]) + 2.0 * ratio * np.sqrt(k) * off
+    rows = 6 if rotates else 3
+    got = task_acceleration(lwr4, q, v, command.torque)[:rows]
+    np.testing.assert_allclose(got, wanted[:rows], rtol=1e-6, atol=1e-6)

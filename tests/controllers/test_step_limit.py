@@ -88,3 +88,18 @@ def test_a_stiffness_that_jumps_under_a_standing_error_becomes_a_ramp(lwr4: Robo
     stack = Stack(lwr4, [FrameTask("flange", tuning)], 1e-3)
     assert steps_of_a_stiffness_that_jumps(lwr4, stack).max() > 0.2  # baseline
     assert steps_of_a_stiffness_that_jumps(lwr4, StepLimit(stack, lwr4)).max() <= DEFAULT_SHARE * (1 + 1e-9)
+
+
+def test_what_was_held_back_is_booked_with_its_sign(lwr4: Robot) -> None:
+    """J: the torque that was not sent, times the way that the joints went meanwhile, joint by joint."""
+    asks = Asks(-lwr4.torque_limit, None)
+    limit, way = StepLimit(asks, lwr4, 0.25), np.array([0.01, -0.02, 0.03, 0.0, 0.005, -0.001, 0.002])
+    first, second = estimate(lwr4, lwr4.home), estimate(lwr4, lwr4.home + way)
+    command, state = limit.step(first, Reference(0.0, ()), limit.init(first))
+    assert command.diagnostics["energy/step_limit"] == 0.0
+    command, state = limit.step(second, Reference(0.0, ()), state)
+    booked = float(np.sum(-0.75 * lwr4.torque_limit * way))
+    assert command.diagnostics["energy/step_limit"] == pytest.approx(booked, rel=1e-12)
+    back = estimate(lwr4, lwr4.home)
+    command, _ = limit.step(back, Reference(0.0, ()), state)
+    assert command.diagnostics["energy/step_limit"] == pytest.approx(booked / 3.0, rel=1e-12)  # −0.5 on the way back

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from pliant.errors import ConfigError, RobotError, SignalError
@@ -53,3 +54,34 @@ def test_bad_input_is_named(lwr4: Robot) -> None:
     observer = MomentumObserver(inner, lwr4)
     with pytest.raises(SignalError, match="in order"):
         observer.step(at(lwr4, 0.0), observer.init(at(lwr4, 1.0)))
+
+
+@pytest.mark.parametrize("compensation", ["none", "gravity", "gravity+coriolis"])
+def test_one_step_is_the_equation_with_the_mean_of_both_ends(lwr4: Robot, compensation: str) -> None:
+    """d = Δp/T − τ − (β₀ + β₁)/2 within 1 − exp(−gain T), written out from the model, at two states far apart."""
+    period, gain = 2e-3, 40.0
+    q = [lwr4.home, lwr4.home + np.linspace(0.1, -0.2, 7)]
+    v = [np.linspace(-0.5, 0.8, 7), np.linspace(0.9, -0.4, 7)]
+    torque = np.linspace(3.0, -5.0, 7)
+    model = lwr4.model
+
+    def momentum_and_bias(q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        data = model.createData()
+        upper = np.triu(pin.crba(model, data, q))
+        C = np.array(pin.computeCoriolisMatrix(model, data, q, v))
+        gravity = np.array(pin.computeGeneralizedGravity(model, data, q))
+        bias = C.T @ v
+        if compensation == "none":
+            bias = bias - gravity
+        elif compensation == "gravity+coriolis":
+            bias = bias + C @ v
+        return (upper + np.triu(upper, 1).T) @ v, bias
+
+    observer = MomentumObserver(DirectEstimator(), lwr4, gain=gain, compensation=compensation)
+    seen = [Measurement(period * i, q[i], v[i], np.zeros(7), torque) for i in range(2)]
+    state = observer.init(seen[0])
+    _, state = observer.step(seen[0], state)
+    found, _ = observer.step(seen[1], state)
+    (p_0, b_0), (p_1, b_1) = (momentum_and_bias(q[i], v[i]) for i in range(2))
+    unexplained = (p_1 - p_0) / period - torque - 0.5 * (b_0 + b_1)
+    np.testing.assert_allclose(found.disturbance, (1.0 - np.exp(-gain * period)) * unexplained, rtol=1e-9)
