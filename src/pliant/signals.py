@@ -61,6 +61,20 @@ class Environment:
 
 
 @dataclass(frozen=True, slots=True)
+class FeltSurface:
+    """How a surface stands, as the path of the contact tells: the believed one, turned about a place and shifted."""
+
+    pivot: Array
+    """(3,) m, where the contact frame first touched"""
+    turn: Array
+    """(3,) rad, rotation vector in world axes that turns the believed surface about the pivot"""
+    normal: Array
+    """(3,) outward unit normal where the frame touches now"""
+    normal_std: float
+    """rad, standard uncertainty of the normal in its least certain direction"""
+
+
+@dataclass(frozen=True, slots=True)
 class Estimate:
     """What the robot believes: the measurement filtered, compensated and completed."""
 
@@ -81,6 +95,8 @@ class Estimate:
     """(n,) joint torque that the model does not explain, N·m, where an observer runs"""
     environments: Mapping[str, Environment] = field(default_factory=_nothing)
     """frame → stiffness and damping of what it touches, where they are estimated"""
+    surfaces: Mapping[str, FeltSurface] = field(default_factory=_nothing)
+    """frame → how the surface stands that it has touched, where that is estimated"""
 
 
 @dataclass(frozen=True, slots=True)

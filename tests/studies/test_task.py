@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,12 @@ from typer.testing import CliRunner
 from pliant.cli.app import app
 from pliant.configuration import merged
 from pliant.experiments.runner import run_case
+from pliant.studies.task.build import planned
 from pliant.studies.task.measure import MEASURES, Signals, measured
 from pliant.studies.task.study import study_of
+from pliant.studies.task.world import true_surface
+from pliant.telemetry import Log
+from pliant.telemetry.output import output_folder
 
 SHORT = {"path": {"pattern": "line", "size": (0.06, 0.03), "speed": 0.06}, "force": {"normal": 20.0}}
 CLI = CliRunner()
@@ -124,3 +129,35 @@ def test_bad_input_is_a_sentence(
     done = CLI.invoke(app, arguments)
     assert done.exit_code == 2, done.output
     assert message in done.output
+
+
+@pytest.mark.study
+def test_the_force_follows_the_normal_that_is_felt(tmp_path: Path) -> None:
+    """A surface 4° off, friction 0.25: after one line and its turn the felt normal is within 1°, and what follows
+    presses better than along the believed one."""
+    study = study_of("wipe")
+    changes = {
+        "truth": {"tilt": 4.0, "axis": (1.0, 1.0, 0.0), "shift": 0.003, "friction": 0.25},
+        "path": {"size": (0.06, 0.02), "speed": 0.08},
+        "force": {"normal": 20.0},
+    }
+    errors = dict[str, float]()
+    for along in ("believed", "estimated"):
+        case = merged(merged(study.case("wipe"), changes), {"force": {"along": along}})
+        result = run_case(study, case, output_folder(tmp_path / along), figures=False)
+        assert result.failure is None
+        assert result.log is not None
+        log = Log.open(result.log)
+        time, wrench = log.time("truth/tool/wrench"), log["truth/tool/wrench"][:, :3]
+        made = planned(case)
+        true = true_surface(case, made.surface, made.path).geometry.normal(log["truth/tool/position"][-1])
+        ends = {name: start for start, name in log.phases()}
+        late = (time > 0.5 * (ends["follow"] + ends["leave"])) & (time < ends["leave"])
+        errors[along] = float(np.abs(wrench[late] @ true - 20.0).mean())
+        if along == "estimated":
+            felt = log["surface/normal"][-1]
+            assert math.degrees(math.acos(float(felt @ true))) < 1.0
+            assert math.degrees(float(log["surface/normal_std"][-1])) < 1.5
+            pushes = wrench[late] / np.linalg.norm(wrench[late], axis=1, keepdims=True)
+            assert np.median(np.degrees(np.arccos(pushes @ true))) > 10.0  # what the force's direction would say
+    assert errors["estimated"] < errors["believed"], errors

@@ -12,6 +12,7 @@ from pliant.estimation.joint_acceleration import JointAcceleration
 from pliant.estimation.joint_state import JointStateFilter
 from pliant.estimation.momentum_observer import MomentumObserver
 from pliant.estimation.start_hints import start_hints
+from pliant.estimation.surface_fit import SurfaceEstimator, SurfaceFitConfig
 from pliant.estimation.tare import Tare
 from pliant.estimation.tool_identification import ToolIdentification, excitation, identify_tool
 from pliant.estimation.wrench import TouchThresholds, WrenchEstimator
@@ -30,6 +31,8 @@ __all__ = [
     "JointStateFilter",
     "LowPass",
     "MomentumObserver",
+    "SurfaceEstimator",
+    "SurfaceFitConfig",
     "Tare",
     "ToolIdentification",
     "TouchThresholds",

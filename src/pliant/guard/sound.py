@@ -50,6 +50,10 @@ def is_estimate(estimate: object, n: int) -> bool:
         sized = [part.shape for part in parts] == [shape] * len(parts)
         sized = sized and [part.shape for part in felt] == [_SIX] * len(felt)
         known = all(map(_is_environment, estimate.environments.values())) if estimate.environments else True
+        for surface in estimate.surfaces.values():
+            felt += [surface.pivot, surface.turn, surface.normal]
+            sized = sized and felt[-1].shape == felt[-2].shape == felt[-3].shape == (3,)
+            known = known and surface.normal_std >= 0.0
         return sized and known and math.isfinite(estimate.time) and _are_finite(parts + felt)
     except _NOT_NUMBERS:
         return False

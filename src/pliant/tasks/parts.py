@@ -107,7 +107,11 @@ class Force(Config):
         "one number, or pairs of (share of the path or time, force) that are joined by straight lines",
     )
     unit: Literal["share", "s"] = Field(default="share", description="of the first number of each pair")
-    along: Literal["believed"] = Field(default="believed", description="whose normal the force follows")
+    along: Literal["believed", "estimated"] = Field(
+        default="believed",
+        description="whose normal the force follows: as the surface is believed to stand, or as the path of the contact"
+        " tells",
+    )
 
     @model_validator(mode="after")
     def _presses(self) -> Force:

@@ -14,6 +14,8 @@ from pliant.estimation import (
     FitConfig,
     JointStateFilter,
     MomentumObserver,
+    SurfaceEstimator,
+    SurfaceFitConfig,
     Tare,
     WrenchEstimator,
 )
@@ -41,6 +43,8 @@ class Sensing:
     """rad/s, of the momentum observer"""
     tare: Tare | None = None
     """what to do at the start about what the force sensor carries and nobody named; None: nothing"""
+    surface: SurfaceFitConfig | None = None
+    """how the pressed surface's tilt is estimated from the path of the contact; None: it is as believed"""
 
 
 def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensing) -> Estimator[Any]:
@@ -61,6 +65,8 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensi
         memory = _JOINT_MEMORY if needs.calm else 0.0
     if memory > 0.0:
         felt = JointStateFilter(felt, memory)
+    if sensing.surface is not None and believed.presses is not None and believed.surface is not None:
+        felt = SurfaceEstimator(felt, robot, believed.presses, believed.surface, sensing.surface)
     if needs.environment:
         frame = believed.presses or believed.frames[0]
         fit = FitConfig(cutoff=_FIT_CUTOFF)

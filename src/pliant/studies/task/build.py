@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
+from pliant.estimation import SurfaceFitConfig
 from pliant.experiments.model_error import with_mass_error
+from pliant.interfaces import ReferenceSource
+from pliant.references.felt_surface import CHANNELS, OnFeltSurface
 from pliant.references.surface_task import SurfaceTask, SurfaceTaskSettings, surface_task
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
@@ -15,8 +19,12 @@ from pliant.studies.task.geometry import force_of, laid_out
 from pliant.studies.task.world import plant_of, true_surface
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.parts import Truth
+from pliant.telemetry.schema import Channel
+from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
+
+_FELT = tuple(Channel(name, unit) for name, unit in CHANNELS.items())
 
 
 @dataclass(frozen=True)
@@ -67,9 +75,22 @@ def build(case: TaskCase) -> Experiment:
         model=with_mass_error(robot, case.truth.link_masses, generator(case.seed, "model.masses")),
         believed=believed,
         plant=lambda felt: plant_of(case, robot, surface, made.references.start),
-        source=made.references.source,
+        source=lambda ahead: _source(case, made.references.source(ahead)),
+        sensing=Sensing(surface=surface_fit(case)),
+        channels=_FELT if case.force.along == "estimated" else (),
         torque_step=case.torque_step,
         joint_limits=case.joint_limits,
         duration=made.references.longest,
     )
     return wired(case.entry, case.controller_parameters(robot, believed), offer)
+
+
+def surface_fit(case: TaskCase) -> SurfaceFitConfig | None:
+    """How the surface's tilt is estimated; None where the force goes along the believed normal."""
+    if case.force.along == "believed":
+        return None
+    return SurfaceFitConfig(radius=case.tool.radius, stiffness=case.surface.stiffness)
+
+
+def _source(case: TaskCase, source: ReferenceSource[Any]) -> ReferenceSource[Any]:
+    return source if case.force.along == "believed" else OnFeltSurface(source, case.tool.frame)

@@ -1,0 +1,149 @@
+"""How a surface stands, from the places at which a tool touched it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.errors import ConfigError
+from pliant.interfaces import Estimator
+from pliant.robot import Robot
+from pliant.signals import Estimate, FeltSurface, Measurement
+from pliant.spatial import Array, cross, skew
+from pliant.surfaces import SurfaceGeometry
+
+_AVERAGED = 10  # readings at least, or noise alone would look like a way
+
+
+@dataclass(frozen=True)
+class SurfaceFitConfig:
+    """What is known beforehand, and how far readings are trusted.
+
+    Raises:
+        ConfigError: on construction, a number that is not finite and above zero (a radius may be zero).
+    """
+
+    radius: float = 0.0
+    """m, of the ball that touches, round the contact frame's origin"""
+    stiffness: float = 2e4
+    """N/m, believed: by how much the surface gives way"""
+    shift_std: float = 0.01
+    """m, by which the believed surface may be off"""
+    turn_std: float = math.radians(5.0)
+    """rad, by which the believed surface may be turned"""
+    place_std: float = 5e-4
+    """m, of a place of contact: kinematics, and what the stiffness does not explain"""
+    spacing: float = 2e-3
+    """m between two places; the readings on the way are averaged, ten at least"""
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and (value > 0.0 or (name == "radius" and value == 0.0))):
+                raise ConfigError(f"{name} of a surface fit must be finite and above zero, got {value}")
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceFitState:
+    """State of the fit between two ticks."""
+
+    inner: Any
+    pivot: Array | None = None
+    """(3,) m; None: nothing was touched yet"""
+    shift_turn: Array = field(default_factory=lambda: np.zeros(6))
+    """(6,) m and rad, of the believed surface"""
+    covariance: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    """(6, 6)"""
+    last: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) m, the place before"""
+    summed: Array | None = None
+    """(4,) of the readings since the last place: position (m) and normal force (N)"""
+    count: int = 0
+    felt: FeltSurface | None = None
+
+
+class SurfaceEstimator(Estimator[SurfaceFitState]):
+    """Fills `Estimate.surfaces` for one contact frame: the believed surface is turned and shifted until it lies under
+    the places that the tool touched (a Kalman filter over shift and rotation vector, 6 numbers that do not change,
+    linear about the belief; its prior is what the belief may be off by).
+
+    Only places count, never the direction of the force: under sliding that is off by the friction angle. Along a
+    direction in which the tool has not moved the believed tilt stays, and `normal_std` says how uncertain it is.
+
+    Args:
+        inner: the estimator before it.
+        robot: as believed.
+        frame: contact frame, the centre of the ball that touches.
+        surface: as believed.
+        config: prior and noise.
+    """
+
+    def __init__(
+        self, inner: Estimator[Any], robot: Robot, frame: str, surface: SurfaceGeometry, config: SurfaceFitConfig
+    ) -> None:
+        self.inner, self.robot, self.frame, self.surface, self.config = inner, robot, frame, surface, config
+        self._frame = robot.frame_id(frame)
+        self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
+        self._prior = np.diag([config.shift_std**2] * 3 + [config.turn_std**2] * 3)
+
+    def init(self, measurement: Measurement) -> SurfaceFitState:
+        return SurfaceFitState(self.inner.init(measurement))
+
+    def step(self, measurement: Measurement, state: SurfaceFitState) -> tuple[Estimate, SurfaceFitState]:
+        estimate, inner = self.inner.step(measurement, state.inner)
+        state = replace(state, inner=inner)
+        wrench = estimate.wrenches.get(self.frame)
+        if wrench is None or not estimate.contacts.get(self.frame, False):
+            state = replace(state, summed=None, count=0)
+        else:
+            state = self._touched(self._position(estimate.q), wrench, state)
+        if state.felt is not None:
+            estimate = replace(estimate, surfaces={**estimate.surfaces, self.frame: state.felt})
+        return estimate, state
+
+    # ------------------------------------------------------------------ inside
+
+    def _position(self, q: Array) -> Array:
+        pin.forwardKinematics(self.robot.model, self._data, q)
+        return np.array(pin.updateFramePlacement(self.robot.model, self._data, self._frame).translation)
+
+    def _touched(self, position: Array, wrench: Array, state: SurfaceFitState) -> SurfaceFitState:
+        """The state after a reading in contact."""
+        if state.felt is None:
+            found = SurfaceFitState(state.inner, position, np.zeros(6), self._prior, position)
+            return replace(found, felt=self._felt(position, found))
+        reading = np.append(position, state.felt.normal @ wrench[:3])
+        summed = reading if state.summed is None else state.summed + reading
+        state = replace(state, summed=summed, count=state.count + 1)
+        mean = summed / state.count
+        if state.count < _AVERAGED or math.dist(mean[:3], state.last) < self.config.spacing:
+            return state
+        state = replace(self._fitted(mean[:3], float(mean[3]), state), last=mean[:3], summed=None, count=0)
+        return replace(state, felt=self._felt(position, state))
+
+    def _fitted(self, place: Array, force: float, state: SurfaceFitState) -> SurfaceFitState:
+        """One step of the filter: the ball's centre is its radius over the surface, less what the surface gives way."""
+        assert state.pivot is not None
+        spread = state.covariance
+        distance = self._moved(state).near(place).distance
+        # derivatives at the belief, always: taken at a changing estimate they would tell of turns that nothing shows
+        n = self.surface.normal(place)
+        H = -np.concatenate([n, cross(place - state.pivot, n)])
+        gain = spread @ H / (float(H @ spread @ H) + self.config.place_std**2)
+        x = state.shift_turn + gain * (self.config.radius - force / self.config.stiffness - distance)
+        spread = spread - np.outer(gain, H @ spread)
+        return replace(state, shift_turn=x, covariance=0.5 * (spread + spread.T))
+
+    def _moved(self, state: SurfaceFitState) -> SurfaceGeometry:
+        return self.surface.moved(state.shift_turn[:3], state.shift_turn[3:], state.pivot)
+
+    def _felt(self, position: Array, state: SurfaceFitState) -> FeltSurface:
+        assert state.pivot is not None
+        normal = self._moved(state).normal(position)
+        turned = skew(normal)  # a small turn ω moves the normal by ω × n
+        spread = turned @ state.covariance[3:, 3:] @ turned.T
+        std = math.sqrt(max(float(np.linalg.eigvalsh(spread)[-1]), 0.0))
+        return FeltSurface(state.pivot, state.shift_turn[3:], normal, std)
