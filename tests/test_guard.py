@@ -147,6 +147,7 @@ BELIEVED = Environment(1e4, 10.0, 100.0, np.inf)
         {"v": [0.0, 0.0, 0.0]},
         {"disturbance": np.full(3, np.nan)},
         {"wrenches": {"foot": np.zeros(3)}},
+        {"wrenches": {"foot": np.full(6, np.nan)}},
     ],
 )
 def test_an_estimate_that_is_not_sound_is_found(changed: dict[str, Any]) -> None:
@@ -273,3 +274,15 @@ def test_a_plan_has_no_torque_for_a_time_before_it() -> None:
     assert torque_from(plan, 1.0, None, config) is not None
     for back in (0.004, 0.3):
         assert torque_from(plan, 1.0 - back, None, config) is None
+
+
+def test_a_command_may_be_as_large_as_the_limit() -> None:
+    """Baseline: a thousandth more is taken away."""
+    guard, watched = started()
+    limit = Robot.load("leg3").torque_limit
+    asked = Command(0.0, limit * np.array([1.0, -1.0, 1.0]), np.zeros(3))
+    sent, fault = guard.command(asked, watched)
+    assert (sent, fault) == (asked, Fault.NONE)
+    beyond, _ = guard.command(replace(asked, torque=1.001 * asked.torque), watched)
+    np.testing.assert_allclose(np.abs(beyond.torque), limit)
+    np.testing.assert_allclose(beyond.clamped, 0.001 * asked.torque, rtol=1e-9)

@@ -110,3 +110,25 @@ def test_away_from_the_limits_nothing_changes(iiwa14: Robot) -> None:
     command, _ = limits.step(seen(iiwa14.home), Reference(0.0), limits.init(seen(iiwa14.home)))
     np.testing.assert_array_equal(command.torque, own)
     assert command.diagnostics["energy/joint_limits"] == 0.0
+
+
+def test_the_stored_energy_is_the_integral_of_the_spring_also_beyond_its_largest_torque(lwr4: Robot) -> None:
+    """J, against a sum of min(K x, F) dx: in the linear part, and where a joint stands beyond its limit."""
+    spring = JointLimits(Constant(np.zeros(lwr4.n)), lwr4, JointLimitsConfig(margin=MARGIN))
+    F, K = spring.torque_max, spring.stiffness
+    for share in (0.4, 1.7):
+        depth = share * F / K
+        x = (np.arange(20_000) + 0.5)[:, None] * depth / 20_000
+        integral = np.sum(np.minimum(K * x, F), axis=0) * depth / 20_000
+        q = lwr4.position_upper - MARGIN + depth
+        channels = spring.step(seen(q), Reference(0.0, ()), spring.init(seen(q)))[0].diagnostics
+        assert channels["energy/joint_limits"] == pytest.approx(float(integral.sum()), rel=1e-6)
+
+
+def test_margins_that_would_overlap_end_in_the_middle(lwr4: Robot) -> None:
+    spring = JointLimits(Constant(np.zeros(lwr4.n)), lwr4, JointLimitsConfig(margin=50.0))
+    half = 0.5 * (lwr4.position_upper - lwr4.position_lower)
+    np.testing.assert_allclose(spring.stiffness, spring.torque_max / half, rtol=1e-12)
+    middle = 0.5 * (lwr4.position_upper + lwr4.position_lower)
+    command, _ = spring.step(seen(middle), Reference(0.0, ()), spring.init(seen(middle)))
+    np.testing.assert_allclose(command.torque, 0.0, atol=1e-9)

@@ -91,3 +91,12 @@ def test_a_log_as_a_data_frame(package: str) -> None:
     pytest.importorskip(package)
     frame = result.log.to_pandas() if package == "pandas" else result.log.to_polars()
     assert frame["time"][3] == pytest.approx(0.003)
+
+
+def test_a_comparison_takes_one_seed_and_no_fewer() -> None:
+    found = pliant.compare("haptic", ["haptic", "haptic-hold"], seeds=1, duration=0.05, checks=[])
+    assert [run.config.seed for run in found.runs] == [0, 0]
+    with pytest.raises(ConfigError, match="needs a controller and a seed, got 1 and 0"):
+        pliant.compare("haptic", ["haptic"], seeds=0)
+    with pytest.raises(ConfigError, match="got 0 and 3"):
+        pliant.compare("haptic", [], seeds=3)

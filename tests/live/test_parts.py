@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from dataclasses import replace
 
@@ -18,6 +19,7 @@ from pliant.live.loop.steered_plant import SteeredPlant
 from pliant.live.page.fields import group_of, nested
 from pliant.live.page.form import parsed
 from pliant.live.page.world_form import SceneForm
+from pliant.live.server.closed import _quiet
 from pliant.robot import Robot
 from pliant.signals import Command
 from pliant.simulation import Imperfections, MujocoPlant, Scene, Surface, floor
@@ -181,3 +183,7 @@ def test_what_cannot_be_built_is_refused_beforehand() -> None:
         plant.rehearse(form.changed(("floor", "stiffness"), 1e9), None)
     with pytest.raises(ConfigError, match="friction"):
         form.changed(("floor", "friction"), -1.0)
+
+
+def test_what_strangers_send_is_not_printed_however_bad() -> None:
+    assert not _quiet().isEnabledFor(logging.CRITICAL)

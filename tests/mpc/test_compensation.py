@@ -143,3 +143,22 @@ def test_bad_input_is_named() -> None:
     with pytest.raises(SignalError, match="MomentumObserver"):
         made.step(_estimate(), _reference(), made.init(_estimate()))
     assert CONTROLLERS["offset-free-mpc"].default.compensation != Compensation()
+
+
+def test_the_prediction_takes_the_oldest_torques_first_and_averages_the_newest() -> None:
+    """What is under way acts in its order; beyond it, means of the last wanted torques with the newest repeated."""
+    made = controller(averaging=3e-3).compensator
+    seen: list[tuple[list[np.ndarray], np.ndarray]] = []
+
+    class Spy:
+        def ahead(self, x: np.ndarray, torques: list[np.ndarray], acting: np.ndarray, touching: bool) -> np.ndarray:
+            seen.append((torques, acting))
+            return x
+
+    made._prediction = Spy()  # type: ignore[assignment]
+    one = np.ones(ROBOT.n)
+    state = replace(made.init(_estimate()), commands=(1.0 * one, 2.0 * one), wanted=(3.0 * one, 6.0 * one, 12.0 * one))
+    made.ahead(np.zeros(2 * ROBOT.n), 0.5 * one, True, state)
+    ((torques, acting),) = seen
+    assert acting == pytest.approx(1.5 * one)
+    assert [float(torque[0]) for torque in torques] == pytest.approx([2.5, (6.0 + 12.0 + 12.0) / 3.0 + 0.5])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,29 @@ from pliant.robots import CATALOGUE, is_available
 from .problems import config, polishing_arm
 
 # ---------------------------------------------------------------------- chain
+
+
+def _rod(tmp_path: Path, joints: int) -> Robot:
+    """A serial chain of short links."""
+    inertial = (
+        '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
+    links = "".join(f'<link name="l{i}">{inertial if i else ""}</link>' for i in range(joints + 1))
+    limit = '<limit lower="-2" upper="2" effort="50" velocity="2"/>'
+    for i in range(joints):
+        axis = ("0 0 1", "0 1 0")[i % 2]
+        ends = f'<parent link="l{i}"/><child link="l{i + 1}"/><origin xyz="0 0 0.1"/><axis xyz="{axis}"/>{limit}'
+        links += f'<joint name="j{i}" type="revolute">{ends}</joint>'
+    path = tmp_path / "rod.urdf"
+    path.write_text(f'<robot name="rod">{links}</robot>')
+    return Robot.load(path)
+
+
+def test_the_kernel_takes_as_many_joints_as_it_says_and_no_more(tmp_path: Path) -> None:
+    most = _mpc.MAX_JOINTS
+    assert chain_from_robot(_rod(tmp_path, most), f"l{most}") is not None
+    with pytest.raises(RobotError, match=f"takes 1 to {most} joints, robot 'rod' has {most + 1}"):
+        chain_from_robot(_rod(tmp_path, most + 1), f"l{most + 1}")
 
 
 @pytest.mark.parametrize("name", ["iiwa14", "lwr4", "leg3", "ur5"])

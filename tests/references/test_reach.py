@@ -223,3 +223,23 @@ def test_a_true_surface_on_which_it_fails_makes_the_task_unreachable() -> None:
 
 def test_unreachable_errors_say_when() -> None:
     assert UnreachableError("x", 2.0).time == 2.0
+
+
+def test_a_course_goes_forward_in_time_from_the_approach_to_the_way_up() -> None:
+    course = on_plane(0.55)
+    assert np.all(np.diff(course.times) > 0.0)
+    path = course.times[course.on_path]
+    assert path[0] == pytest.approx(0.3)  # s: 30 mm at 0.1 m/s
+    assert course.times[-1] == pytest.approx(path[-1] + 0.3)
+
+
+def test_the_joint_margin_is_to_the_nearer_limit() -> None:
+    check = quick(on_plane(0.55))
+    assert check.posture is not None
+    (margin,) = (margin for margin in check.surfaces[0].margins if margin.name == "joint margin")
+    whole = Spline(check.posture.times, check.posture.postures)
+    found = [whole.at(float(time)).value for time in on_plane(0.55).times]
+    left = [min(np.min(q - ROBOT.position_lower), np.min(ROBOT.position_upper - q)) for q in found]
+    np.testing.assert_allclose(margin.values, left, atol=1e-9)
+    nearer = [np.min(ROBOT.position_upper - q) < np.min(q - ROBOT.position_lower) for q in found]
+    assert any(nearer)  # so that the upper limits are looked at

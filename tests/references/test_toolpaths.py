@@ -14,7 +14,7 @@ from pliant.errors import ConfigError, OutputError, PliantError
 from pliant.references.toolpaths.corners import rounded
 from pliant.references.toolpaths.files import read_path
 from pliant.references.toolpaths.pace import pace
-from pliant.references.toolpaths.patterns import PATTERNS, line, raster, spiral, square
+from pliant.references.toolpaths.patterns import PATTERNS, STEP, circle, lemniscate, line, raster, spiral, square
 from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, through
 from pliant.spatial import exp3, log3
 from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
@@ -203,3 +203,12 @@ def test_a_path_through_points_keeps_speed_and_force_of_its_file() -> None:
     assert np.linalg.norm(path.position.at(0.5 * path.duration).rate) == pytest.approx(0.03, rel=0.02)
     assert path.force is not None
     assert path.force.at(0.5 * path.duration).value[0] == pytest.approx(15.0, abs=0.2)
+
+
+@pytest.mark.parametrize("pattern", [circle, lemniscate])
+def test_curves_are_sampled_as_densely_as_it_takes(pattern) -> None:
+    """No step is longer than STEP by more than the curve is uneven, and there are not twice as many as needed."""
+    points = pattern((0.4, 0.2), 1.5)
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    assert 0.5 * STEP < steps.mean() < STEP
+    assert steps.max() < 1.5 * STEP

@@ -7,11 +7,14 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from pliant.errors import RobotError
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
+from pliant.robots.chain import arm_of
+from pliant.robots.home import _inner_range, bent_home
 from tests.test_robot_files import MJCF, arm, load, mass_and_bias, mjcf, mujoco_mass_and_bias, urdf
 
 FINGERS = "".join(
@@ -124,3 +127,46 @@ def test_moments_that_rounding_made_impossible_still_compile(beyond: float, tmp_
     q, v = np.array([0.3]), np.array([0.5])
     plant = mujoco_mass_and_bias(spec_from_robot(robot).compile(), q, v)
     np.testing.assert_allclose(plant[0], mass_and_bias(robot, q, v)[0], atol=0.02 * beyond + 1e-9)
+
+
+def test_home_of_the_panda_is_its_ready_pose() -> None:
+    """As its maker's software calls it: elbow bent, flange 0.59 m up, 0.31 m in front, pointing down."""
+    robot = Robot.load("panda")
+    np.testing.assert_allclose(np.degrees(robot.home), [0, -45, 0, -135, 0, 90, 45], atol=1e-9)
+    position, rotation = robot.placement(robot.home, "flange")
+    np.testing.assert_allclose(position, [0.307, 0.0, 0.590], atol=2e-3)
+    np.testing.assert_allclose(rotation[:, 2], [0.0, 0.0, -1.0], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e"])
+def test_a_home_that_is_searched_for_is_in_front_and_points_down(name: str) -> None:
+    model = Robot.load(name).model
+    arm_ = arm_of(model)
+    assert arm_ is not None
+    q = bent_home(model, arm_)
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    shoulder, pose = np.array(data.oMi[arm_.joints[1]].translation), data.oMf[arm_.flange]
+    np.testing.assert_allclose(pose.translation, shoulder + arm_.reach * np.array([0.5, 0.0, 0.05]), atol=0.01)
+    assert pose.rotation[2, 2] < -0.99
+
+
+def test_a_searched_home_lies_in_the_inner_part_of_a_range_that_is_not_about_zero() -> None:
+    model = Robot.load("lwr4").model.copy()
+    lower, upper = np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit)
+    lower[3], upper[3] = -2.0, -0.2
+    model.lowerPositionLimit, model.upperPositionLimit = lower, upper
+    arm_ = arm_of(model)
+    assert arm_ is not None
+    low, high = _inner_range(model, arm_)
+    assert 0.5 * (low[3] + high[3]) == pytest.approx(-1.1)
+    assert 0.0 < high[3] - low[3] < 1.8
+
+
+def test_missing_meshes_are_counted(tmp_path: Path) -> None:
+    def visual(name: str) -> str:
+        return f'<visual><geometry><mesh filename="{name}"/></geometry></visual>'
+
+    text = urdf().replace("<inertial>", visual("a.stl") + visual("b.stl") + visual("c.stl") + "<inertial>", 1)
+    notes = " ".join(load(tmp_path, text, "urdf").notes)
+    assert "meshes that are not there are not drawn: a.stl and 2 more" in notes

@@ -17,7 +17,8 @@ PLIANT = [sys.executable, "-c", f"import {TOY}\nfrom pliant.cli import main\nif 
 
 
 def environment() -> dict[str, str]:
-    added = {"PYTHONPATH": str(ROOT), "DASK_DISTRIBUTED__WORKER__PRELOAD": TOY, "OMP_NUM_THREADS": "1"}
+    path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+    added = {"PYTHONPATH": path, "DASK_DISTRIBUTED__WORKER__PRELOAD": TOY, "OMP_NUM_THREADS": "1"}
     return os.environ | added | {"COLUMNS": "160", "PYTHONWARNINGS": "default"}
 
 
