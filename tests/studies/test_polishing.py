@@ -131,3 +131,19 @@ def test_every_channel_has_a_unit() -> None:
     command, _ = experiment.controller.step(estimate, reference, experiment.controller.init(estimate))
     assert set(command.diagnostics) == names
     assert all(channel.unit for channel in experiment.channels)
+
+
+def test_what_nobody_knows_of_the_tool_is_added_to_it() -> None:
+    known, heavier = _config().robot_model(), _config().robot_model(0.5)
+    masses = [sum(inertia.mass for inertia in robot.model.inertias) for robot in (known, heavier)]
+    assert masses[1] - masses[0] == pytest.approx(0.5)
+
+
+def test_times_that_do_not_increase_are_refused() -> None:
+    with pytest.raises(ConfigError, match="must increase"):
+        STUDY.build(_config(task={"reach": 1.0, "touch": 1.0}))
+
+
+def test_the_grid_of_contact_models_is_whole() -> None:
+    """Those whose damping is below 3 ms times the stiffness; of the grid that is tried, none is."""
+    assert len(STUDY.runs("stiffness", 1)) == 16 * 4

@@ -18,6 +18,7 @@ from pliant.studies.task.world import true_surface
 from pliant.tasks import load_task
 from pliant.tasks.draws import Choice, Normal, Uniform, bounds, drawn
 from pliant.tasks.files import catalogue, read_task
+from pliant.tasks.parts import Force
 
 
 def written(folder: Path, text: str, name: str = "task.toml") -> Path:
@@ -181,3 +182,21 @@ def test_a_surface_out_of_reach_is_refused(tmp_path: Path) -> None:
     task = load_task(written(tmp_path, "[surface]\npose = { xyz = [2.0, 0.0, 0.0] }\n"))
     with pytest.raises(PliantError, match="cannot reach"):
         planned(case_of(task, "mine"))
+
+
+def test_a_force_of_nothing_is_asked_for_and_a_pull_is_not() -> None:
+    force = Force(normal=((0.0, 0.0), (0.5, 30.0), (1.0, 10.0)))
+    assert force.knots() == ((0.0, 0.5, 1.0), (0.0, 30.0, 10.0))
+    assert force.largest == 30.0  # N, not the last share
+    assert Force(normal=0.0).largest == 0.0
+    with pytest.raises(ValueError, match="must not be negative, got -1 N"):
+        Force(normal=((0.0, -1.0), (1.0, 5.0)))
+
+
+def test_files_inherit_eight_deep_and_no_deeper(tmp_path: Path) -> None:
+    written(tmp_path, "[path]\nspeed = 0.07\n", "0.toml")
+    for depth in range(1, 10):
+        written(tmp_path, f'base = "{depth - 1}.toml"\n', f"{depth}.toml")
+    assert load_task(tmp_path / "8.toml").path.speed == 0.07
+    with pytest.raises(ConfigError, match="more than 8 deep"):
+        load_task(tmp_path / "9.toml")

@@ -213,7 +213,7 @@ def _haptic(kind: str) -> float:
     config: HapticConfig = HAPTIC.case("box-top").model_copy(update={"period": 0.1, "checks": (check,)})
     place = columns(0.1, 0.2, 0.3)
     side = np.where((K == 4) | (K < 2), 0.0, -4.0)  # lost once, in sample 4
-    turned = np.array([0.3, 0.0, 0.1, math.cos(0.7), math.sin(0.7), 0.0, 0.0])  # 1.4 rad about x
+    turned = np.array([0.3, 0.0, 0.1, math.cos(0.7), 0.6 * math.sin(0.7), 0.8 * math.sin(0.7), 0.0])  # by 1.4 rad
     tuning = ImpedanceTuning(np.full(3, 1e3), np.array([5.0, 10.0, 50.0]), np.array([0.03, 0.02, 0.008]))
     log = ten_samples(
         0.1,

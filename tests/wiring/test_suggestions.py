@@ -1,0 +1,59 @@
+"""What wiring derives from what is believed: numbers, frames and filters, one by one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from pliant.entries import Believed
+from pliant.estimation import JointStateFilter
+from pliant.estimation.environment import EnvironmentEstimator
+from pliant.interfaces import Controller, Needs
+from pliant.robot import Robot
+from pliant.wiring.estimators import Sensing, estimator_for
+from pliant.wiring.plugins import entry_of
+from pliant.wiring.registry import find_controller
+
+
+def test_force_is_regulated_ten_times_slower_than_the_loop_answers(leg3: Robot) -> None:
+    """k_I ≤ 0.1 / (period + both delays), 1/s; a loop that is quick enough keeps its own."""
+    entry = find_controller("haptic")
+    own = entry.default.exploration.gain  # type: ignore[attr-defined]
+    late = Believed(("foot",), 1e-3, presses="foot", sensing_delay=2e-3, computation_delay=4e-3)
+    gain = entry.suggest(leg3, entry.default, late).exploration.gain  # type: ignore[attr-defined]
+    assert gain == pytest.approx(0.1 / 7e-3)
+    assert gain < own
+    quick = Believed(("foot",), 1e-4, presses="foot")
+    assert entry.suggest(leg3, entry.default, quick).exploration.gain == own  # type: ignore[attr-defined]
+
+
+def test_the_environment_is_looked_for_at_the_frame_that_presses_or_the_first(lwr4: Robot) -> None:
+    needs = Needs(environment=True)
+    first = estimator_for(needs, lwr4, Believed(("flange", "elbow"), 1e-3), Sensing())
+    pressed = estimator_for(needs, lwr4, Believed(("flange", "elbow"), 1e-3, presses="elbow"), Sensing())
+    assert isinstance(first, EnvironmentEstimator)
+    assert isinstance(pressed, EnvironmentEstimator)
+    assert (first.frame, pressed.frame) == ("flange", "elbow")
+
+
+@pytest.mark.parametrize(
+    ("memory", "calm", "filtered"), [(0.0, True, False), (None, True, True), (None, False, False), (0.2, False, True)]
+)
+def test_joints_are_filtered_where_that_is_asked_for(
+    memory: float | None, calm: bool, filtered: bool, lwr4: Robot
+) -> None:
+    made = estimator_for(Needs(calm=calm), lwr4, Believed(("flange",), 1e-3), Sensing(joint_memory=memory))
+    assert isinstance(made, JointStateFilter) is filtered
+
+
+@dataclass
+class Own(Controller[None]):
+    """The first line says what it is.
+
+    The others do not.
+    """
+
+
+def test_the_first_line_of_a_controllers_own_text_is_its_summary() -> None:
+    assert entry_of(Own, "mine:Own").summary == "The first line says what it is."
