@@ -19,6 +19,7 @@ from pliant.errors import PliantError, RunFailedError
 _err = Console(stderr=True)
 
 P = ParamSpec("P")
+_LONGEST = 1200  # letters of a sentence
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -50,6 +51,8 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
 
 def _complain(kind: str, text: str) -> None:
+    if len(text) > _LONGEST:  # somebody's word of thousands of letters
+        text = f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 2 :]}"
     _err.print(f"{kind}: {text}", style="red", markup=False, highlight=False, soft_wrap=True)
 
 
