@@ -38,6 +38,16 @@ class RunFailedError(PliantError):
     """A run that started and broke a safety rule on the way. The command line turns it into exit code 1."""
 
 
+def told(error: BaseException) -> str:
+    """Type and text of somebody else's error, in one line of at most 300 letters, whatever its text is."""
+    try:
+        text = " ".join(str(error).split())
+    except Exception:
+        text = ""
+    name = type(error).__name__
+    return f"{name}: {text[:300]}" if text else name
+
+
 def options(names: Iterable[str], got: str | None = None) -> str:
     """A readable list of valid names, with the closest one first when `got` looks like a typing slip.
 
@@ -48,7 +58,7 @@ def options(names: Iterable[str], got: str | None = None) -> str:
     Returns:
         For example ``"valid: 'a', 'b' (did you mean 'a'?)"``.
     """
-    known = sorted(names)
+    known = sorted(map(str, names))
     text = "valid: " + ", ".join(repr(name) for name in known) if known else "there is none"
     close = difflib.get_close_matches(got, known, n=1) if got else []
     return f"{text} (did you mean {close[0]!r}?)" if close else text

@@ -7,13 +7,17 @@ import traceback
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from pliant.errors import ConfigError, PliantError, RobotError, RunFailedError, ShapeError
+from pliant.errors import ConfigError, PliantError, RobotError, RunFailedError, ShapeError, told
 from pliant.guard import Fault, Guard
 from pliant.interfaces import Controller, Estimator, Observer, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.signals import Tick
+
+_Signal = TypeVar("_Signal")
+_WHATEVER = (Exception, SystemExit, GeneratorExit)
+"""what ends a run; Ctrl-C passes through"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,18 +75,18 @@ def run(
             now = guard.now(measurement, watched)
             if not fault:
                 est = estimator.init(measurement) if fresh else est
-                found, est = estimator.step(measurement, est)
+                found, est = _pair(estimator.step(measurement, est), "estimator")
                 fault = guard.estimate(found, watched)
                 estimate = estimate if fault else found
             if not fault and estimate is not None:
                 ref = source.init(estimate) if fresh else ref
-                wanted, ref = source.step(estimate, ref)
+                wanted, ref = _pair(source.step(estimate, ref), "source")
                 fault = guard.reference(wanted, watched)
                 reference = reference if fault else wanted
             if not fault and estimate is not None and reference is not None:
                 ctl = controller.init(estimate) if fresh else ctl
                 planned = time.perf_counter()
-                answer, ctl = controller.step(estimate, reference, ctl)
+                answer, ctl = _pair(controller.step(estimate, reference, ctl), "controller")
                 answer, fault = guard.command(answer, watched)
                 command = command if fault is Fault.COMMAND else answer
             if estimate is None or reference is None or command is None:
@@ -98,22 +102,29 @@ def run(
                 wall,
                 int(fault),
             )
-        except Exception as error:  # whatever a part raises: the run ends in order
+        except _WHATEVER as error:  # that a part raises: the run ends in order
             if command is None and isinstance(error, ConfigError | ShapeError | RobotError):
                 raise  # parts that do not fit together: nothing has run
             return _ended(ticks, now, error)
         for observe in observers:
             observe(tick)  # an observer's error is its own: a full disk is not the robot's failure
         try:
-            measurement, world = plant.step(command, world)
-        except Exception as error:
+            measurement, world = _pair(plant.step(command, world), "plant")
+        except _WHATEVER as error:
             return _ended(ticks, now, error)
         ticks += 1
     return Outcome(ticks, measurement.time)
 
 
-def _ended(ticks: int, now: float, error: Exception) -> Outcome:
+def _pair(answer: tuple[_Signal, Any], part: str) -> tuple[_Signal, Any]:
+    if isinstance(answer, tuple) and len(answer) == 2:  # pyright: ignore[reportUnnecessaryIsInstance, reportUnnecessaryComparison] (somebody's own part)
+        return answer
+    raise ConfigError(f"the {part}'s step must return two things, its signal and its next state, got {answer!r:.80}")
+
+
+def _ended(ticks: int, now: float, error: BaseException) -> Outcome:
     if not isinstance(error, PliantError):
         where = traceback.extract_tb(error.__traceback__)[-1]
-        error = RunFailedError(f"{type(error).__name__} in {Path(where.filename).name}, line {where.lineno}: {error}")
+        name, _, text = told(error).partition(": ")
+        error = RunFailedError(f"{name} in {Path(where.filename).name}, line {where.lineno}: {text}".removesuffix(": "))
     return Outcome(ticks, now, f"{error} at t = {now:.4f} s")

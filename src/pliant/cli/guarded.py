@@ -14,7 +14,7 @@ import typer
 from rich.console import Console
 
 from pliant import __version__
-from pliant.errors import PliantError, RunFailedError
+from pliant.errors import PliantError, RunFailedError, told
 
 _err = Console(stderr=True)
 
@@ -42,9 +42,8 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise typer.Exit(130) from None
         except (typer.Exit, typer.Abort, BrokenPipeError):  # no errors of ours
             raise
-        except Exception as error:
-            what = " ".join(f"{type(error).__name__}: {error}".split())[:300]
-            _complain("error", f"pliant {__version__} did not foresee this ({what}); {_kept()}")
+        except (Exception, SystemExit) as error:
+            _complain("error", f"pliant {__version__} did not foresee this ({told(error)}); {_kept()}")
             raise typer.Exit(2) from None
 
     return wrapped

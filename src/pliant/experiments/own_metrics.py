@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import entry_points
 from typing import Any
 
-from pliant.errors import ConfigError, options
+from pliant.errors import ConfigError, options, told
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 from pliant.wiring.plugins import imported
@@ -58,8 +58,8 @@ def _measured(name: str, config: Any, log: Log) -> list[Metric]:
         metrics = [found] if isinstance(found, Metric) else list(found)
     except ConfigError:
         raise
-    except Exception as error:  # whatever somebody's code makes of a log
-        raise ConfigError(f"metric {name!r} fails on {log.source}: {type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:  # whatever somebody's code makes of a log
+        raise ConfigError(f"metric {name!r} fails on {log.source}: {told(error)}") from error
     if any(not isinstance(metric, Metric) for metric in metrics):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ConfigError(f"metric {name!r} must return a pliant.Metric or several, got {found!r}")
     return metrics

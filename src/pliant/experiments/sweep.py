@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pliant.errors import ConfigError, PliantError
+from pliant.errors import ConfigError, PliantError, told
 from pliant.experiments.base import CaseConfig, Result, check_windows
 from pliant.experiments.config import assigned, merged
 from pliant.experiments.pool import Lost, Pool, in_this_process
@@ -103,7 +103,7 @@ def run_task(task: Task) -> Run:
     started = time.perf_counter()
     try:
         result = _run(task)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         return Run(Result(task.config, (), _sentence(error)), "crashed", time.perf_counter() - started)
     status = "finished" if result.failure is None else "failed"
     return Run(result, status, time.perf_counter() - started)
@@ -117,8 +117,9 @@ def _run(task: Task) -> Result:
     return run_case(study, task.config, folder, figures=shown)
 
 
-def _sentence(error: Exception) -> str:
+def _sentence(error: BaseException) -> str:
     if isinstance(error, PliantError):
         return str(error)
     where = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__} in {Path(where.filename).name}, line {where.lineno}: {error}"
+    name, _, text = told(error).partition(": ")
+    return f"{name} in {Path(where.filename).name}, line {where.lineno}: {text}"

@@ -35,9 +35,12 @@ class Watched:
     """What the guard remembers. Consumed by its methods."""
 
     reading: Measurement
-    """the last sound one"""
+    """the last sound one, as its parts may have left it"""
+    q: Array
+    v: Array
+    """(n,) of it, rad and rad/s, kept from parts that write into what they get"""
     torque: Array
-    """(n,) the last torque sent, N·m"""
+    """(n,) the last torque sent, N·m; a copy, since a controller may use its array again"""
     n: int
     """number of joints"""
     frames: tuple[str, ...]
@@ -90,7 +93,8 @@ class Guard:
         if sound.reading_fault(measurement, len(measurement.q), frames):
             raise SignalError(f"a measurement was not finite at t = {measurement.time:.4f} s, the first one")
         sent = self._within(np.array(measurement.torque_sent))
-        return Watched(measurement, sent, len(measurement.q), frames)
+        q, v = np.array(measurement.q), np.array(measurement.v)
+        return Watched(measurement, q, v, sent, len(q), frames)
 
     # ------------------------------------------------------------------ signals
 
@@ -112,6 +116,7 @@ class Guard:
             return Fault.STALE if step == 0.0 else Fault.BACKWARD
         late = watched.seen and step > (due - 1 + _LATE) * self._period
         watched.seen, watched.reading, watched.missed = True, reading, 0  # sound in itself: time goes on from it
+        watched.q, watched.v = reading.q.copy(), reading.v.copy()
         if late:
             return Fault.LATE
         return Fault.FROZEN if frozen else Fault.NONE
@@ -172,7 +177,7 @@ class Guard:
             RunFailedError: faults have lasted for `PATIENCE`.
         """
         if fault in (Fault.NONE, Fault.BEYOND_LIMIT):
-            watched.torque, watched.faults = command.torque, 0
+            watched.torque, watched.faults = np.array(command.torque, dtype=float), 0
             return command
         watched.faults += 1
         if watched.faults * self._period > PATIENCE + 0.5 * self._period:
@@ -193,10 +198,9 @@ class Guard:
         """(n,) N·m at the last sound reading."""
         if self._robot is None or self._data is None:
             return watched.torque
-        reading = watched.reading
-        torque = -_DAMPING * reading.v
+        torque = -_DAMPING * watched.v
         if self._plant.compensates == "none":
-            torque = torque + pin.computeGeneralizedGravity(self._robot.model, self._data, reading.q)
+            torque = torque + pin.computeGeneralizedGravity(self._robot.model, self._data, watched.q)
         return self._within(torque)
 
     def _frozen(self, reading: Measurement, watched: Watched) -> bool:

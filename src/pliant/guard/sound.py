@@ -1,7 +1,8 @@
 """Whether a signal is sound: of the right type and size, of real numbers, finite.
 
 All numbers of a signal are strung together and looked at once, since this runs in every tick: a sum of squares is
-finite if every number is, and none is so large (1e154) that its square is not.
+finite if every number is, and none is so large (1e154) that its square is not. Kinds of arrays that hide numbers
+(numpy's masked ones) are not of real numbers.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ def reading_fault(reading: Measurement, n: int, frames: tuple[str, ...]) -> Faul
         if not sized or tuple(reading.wrenches) != frames:
             return Fault.SHAPE
         flat = np.concatenate(joints + felt)
-        if flat.dtype.kind not in _REAL:
+        if flat.__class__ is not np.ndarray or flat.dtype.kind not in _REAL:
             return Fault.SHAPE
         return Fault.NONE if math.isfinite(reading.time) and math.isfinite(flat.dot(flat)) else Fault.NOT_FINITE
     except _NOT_NUMBERS:
@@ -67,6 +68,8 @@ def is_reference(reference: object, n: int) -> bool:
     shapes: list[tuple[int, ...]] = []
     try:
         for task in reference.tasks:
+            if not isinstance(task.frame, str):  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own part)
+                return False
             parts += (task.position, task.velocity, task.acceleration, task.wrench)
             shapes += _OF_TASK
             for rotation in (task.rotation, task.task_rotation):
@@ -87,7 +90,8 @@ def is_torque(time: float, torque: Array, n: int) -> bool:
     """Whether a torque for n joints is sound, and so is its time."""
     try:
         return (
-            torque.shape == (n,)
+            torque.__class__ is np.ndarray
+            and torque.shape == (n,)
             and torque.dtype.kind in _REAL
             and math.isfinite(time)
             and math.isfinite(torque.dot(torque))
@@ -119,4 +123,4 @@ def _are_finite(parts: list[Array]) -> bool:
     if not parts:
         return True
     flat = np.concatenate(parts, axis=None)
-    return flat.dtype.kind in _REAL and math.isfinite(flat.dot(flat))
+    return flat.__class__ is np.ndarray and flat.dtype.kind in _REAL and math.isfinite(flat.dot(flat))

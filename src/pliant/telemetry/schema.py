@@ -8,7 +8,7 @@ there
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from operator import attrgetter, itemgetter
@@ -81,8 +81,8 @@ def signature(tick: Tick) -> tuple[Any, ...]:
         estimate.disturbance is None,
         tuple([_task_signature(task) for task in reference.tasks]),
         reference.posture is None,
-        tuple(reference.diagnostics),
-        tuple(tick.command.diagnostics),
+        tuple(reference.diagnostics or ()),  # None, which is none, is refused where channels are made
+        tuple(tick.command.diagnostics or ()),
         None
         if truth is None
         else (
@@ -240,6 +240,8 @@ def _labels(shape: tuple[int, ...]) -> tuple[str, ...]:
 
 def _diagnostics(tick: Tick, signal: str, units: Sequence[Channel]) -> tuple[list[Group], list[Group]]:
     entries = getattr(tick, signal).diagnostics
+    if not isinstance(entries, Mapping) or not all(isinstance(name, str) for name in entries):
+        raise ShapeError(f"the {signal}'s diagnostics must be a mapping from names to numbers, got {entries!r:.80}")
     arrays: list[Channel] = []
     scalars: list[Channel] = []
     for name, value in entries.items():

@@ -7,13 +7,14 @@ import importlib.util
 import inspect
 import sys
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
-from pliant.errors import ConfigError, options
-from pliant.interfaces import Controller
+from pliant.errors import ConfigError, PliantError, options, told
+from pliant.interfaces import Controller, Needs
 from pliant.robot import Robot
 
 
@@ -41,8 +42,8 @@ def _from_path(name: str) -> ModuleType:
         sys.path.append(here)
     try:
         return importlib.import_module(name)
-    except Exception as error:
-        raise ConfigError(f"module {name!r} cannot be imported: {type(error).__name__}: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise ConfigError(f"module {name!r} cannot be imported: {told(error)}") from error
     finally:
         if added:
             sys.path.remove(here)
@@ -62,9 +63,9 @@ def _from_file(path: Path) -> ModuleType:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise ConfigError(f"file {path} cannot be imported: {type(error).__name__}: {error}") from error
+        raise ConfigError(f"file {path} cannot be imported: {told(error)}") from error
     return module
 
 
@@ -95,7 +96,16 @@ class _Build:
         self._kind = kind
 
     def __call__(self, robot: Robot, config: ControllerConfig, period: float) -> Controller[Any]:
-        return self._kind(robot, config, period)
+        try:
+            made: Controller[Any] = self._kind(robot, config, period)
+            known = isinstance(made.needs, Needs) and isinstance(made.channels, Mapping)  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own)
+        except PliantError:
+            raise
+        except (Exception, SystemExit) as error:
+            raise ConfigError(f"controller {self._kind.__name__} cannot be made: {told(error)}") from error
+        if not known:
+            raise ConfigError(f"controller {self._kind.__name__}: needs must be Needs, and channels name → unit")
+        return made
 
 
 def _with_frame(robot: Robot, config: ControllerConfig, believed: Believed) -> ControllerConfig:
