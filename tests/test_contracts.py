@@ -67,3 +67,45 @@ def test_the_library_does_not_print() -> None:
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print":
                 offenders.append(f"{path.relative_to(ROOT)}:{node.lineno}")
     assert not offenders
+
+
+def imports_of(path: Path, modules: set[str]) -> set[str]:
+    """Modules that are imported when a file is: not for types alone, nor inside functions."""
+    found: set[str] = set()
+    waiting: list[ast.stmt] = list(ast.parse(path.read_text()).body)
+    while waiting:
+        statement = waiting.pop()
+        if isinstance(statement, ast.If | ast.Try):
+            typing_only = isinstance(statement, ast.If) and "TYPE_CHECKING" in ast.unparse(statement.test)
+            waiting += statement.orelse if typing_only else [*statement.body, *statement.orelse]
+        elif isinstance(statement, ast.Import):
+            found |= {alias.name for alias in statement.names}
+        elif isinstance(statement, ast.ImportFrom) and statement.module and not statement.level:
+            for alias in statement.names:
+                whole = f"{statement.module}.{alias.name}"
+                found.add(whole if whole in modules else statement.module)
+    return found & modules
+
+
+def circle_in(graph: dict[str, set[str]]) -> list[str]:
+    """Modules that are left when those that import nothing of the rest are taken away again and again."""
+    rest = dict(graph)
+    while gone := {name for name, imported in rest.items() if not imported & rest.keys()}:
+        rest = {name: imported for name, imported in rest.items() if name not in gone}
+    while idle := rest.keys() - {name for imported in rest.values() for name in imported}:
+        rest = {name: imported for name, imported in rest.items() if name not in idle}
+    return sorted(rest)
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    source = ROOT / "src"
+    files = {
+        ".".join(path.relative_to(source).with_suffix("").parts).removesuffix(".__init__"): path
+        for path in (source / "pliant").rglob("*.py")
+    }
+    graph = {name: imports_of(path, set(files)) for name, path in files.items()}
+    assert len(graph) > 300
+    assert circle_in(graph) == []
+    # Baseline: one import upwards closes a circle, and all of it is named.
+    closed = graph | {"pliant.telemetry.summary": {*graph["pliant.telemetry.summary"], "pliant.experiments.case"}}
+    assert {"pliant.experiments.case", "pliant.telemetry.summary"} <= set(circle_in(closed))

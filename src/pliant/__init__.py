@@ -12,7 +12,7 @@ when they are asked for. Beside them, `pliant.controllers()` and `pliant.robots(
 import importlib
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"
 
 _WHERE = {
     "run": "pliant.face.run",
