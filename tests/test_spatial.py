@@ -69,3 +69,11 @@ def test_vectors_are_checked_and_read_only() -> None:
         as_vector([1.0, float("nan"), 2.0], 3, "gain")
     with pytest.raises(SignalError, match="length above zero"):
         frame_with_z_along([0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("angle", [3e-6, 9e-5, 0.99e-4, 1.01e-4, 1e-3])
+def test_small_turns_are_rotations_to_double_precision(angle: float) -> None:
+    """Below and above the angle at which the series takes over."""
+    w = angle * np.array([0.36, -0.48, 0.8])
+    np.testing.assert_allclose(exp3(w), pin.exp3(w), rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(exp3(w) @ exp3(w).T, np.eye(3), rtol=0.0, atol=1e-12)
