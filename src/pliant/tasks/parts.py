@@ -172,6 +172,8 @@ class Truth(Config):
     friction: Drawn | None = quantity(None, "1", "none: as believed")
     tool_mass: Drawn = quantity(0.0, "kg", "of the tool beside what is known")
     link_masses: float = quantity(0.0, "1", "share by which each link's mass is off, drawn within ±", ge=0.0, lt=1.0)
+    joint_friction: float = quantity(0.0, "N·m", "dry friction of each joint", ge=0.0, le=1e4)
+    joint_damping: float = quantity(0.0, "N·m·s/rad", "of each joint", ge=0.0, le=1e4)
     imperfections: Literal["none", "p3", "p3-without-torque-loop"] | dict[str, Any] = Field(
         default="none",
         description="of sensors, drives and computation: none; p3: those of [FFMPC] sec. VI-B; or a table of values",

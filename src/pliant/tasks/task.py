@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from pliant.configuration import Config, Range
+from pliant.configuration import Config, Range, quantity
 from pliant.tasks.parts import Disturbance, Force, Limits, Path, Phases, Simulation, Surface, Timing, Tool, Truth
+from pliant.tasks.phase import Event, Impedance, Phase, Planner, Thing
 
 FORMAT = 1
+_OF_A_PATH = {"surface": Surface(), "path": Path(), "force": Force(), "phases": Phases()}
+_OF_A_LIST = ("event", "scene", "moves", "start", "impedance")
+_OF_THE_SURFACE = ("shift", "tilt", "axis", "stiffness", "damping", "friction")
 
 
 class TaskParts(Config):
@@ -27,6 +31,19 @@ class TaskParts(Config):
     path: Path = Path()
     force: Force = Force()
     phases: Phases = Phases()
+    phase: tuple[Phase, ...] = Field(
+        default=(), description="an explicit list, in place of surface, path, force and phases"
+    )
+    scene: dict[str, Thing] = Field(default={}, description="name → thing that stands around, with [[phase]]")
+    event: tuple[Event, ...] = Field(default=(), description="online changes, with [[phase]]")
+    moves: str | None = Field(default=None, description="frame that targets and wrenches are for; none: the tool's")
+    start: tuple[float, ...] | None = quantity(None, "deg", "joints at the start, with targets; none: home")
+    impedance: Impedance | None = Field(default=None, description="of the moved frame; none: the controller's own")
+    planner: Planner = Planner()
+    compensates: Literal["none", "gravity", "gravity+coriolis"] = Field(
+        default="none", description="what the robot compensates by itself"
+    )
+    velocity_share: float = quantity(1.0, "1", "of a new sample in the joint velocity; 1: no filter", gt=0.0, le=1.0)
     timing: Timing = Timing()
     limits: Limits = Limits()
     truth: Truth = Truth()
@@ -44,6 +61,26 @@ class TaskParts(Config):
     control: dict[str, dict[str, Any]] = Field(
         default={}, description="controller → changes to its parameters, e.g. [control.haptic]"
     )
+
+    @model_validator(mode="after")
+    def _is_of_one_kind(self) -> TaskParts:
+        if not self.phase:
+            said = [name for name in _OF_A_LIST if getattr(self, name) not in ((), {}, None)]
+            if said:
+                raise ValueError(f"{said[0]} belongs to a task of [[phase]]; this one has a path on a surface")
+            return self
+        said = [name for name, default in _OF_A_PATH.items() if getattr(self, name) != default]
+        said += [f"truth.{name}" for name in _OF_THE_SURFACE if getattr(self.truth, name) != getattr(Truth(), name)]
+        if said:
+            raise ValueError(f"{said[0]} belongs to a task with a path on a surface; this one is a list of [[phase]]")
+        names = self.phase_names()
+        if len(set(names)) < len(names):
+            raise ValueError(f"phases need different names, got {list(names)}")
+        return self
+
+    def phase_names(self) -> tuple[str, ...]:
+        """Of the list: each one's name, or its number."""
+        return tuple(one.name or f"phase {index}" for index, one in enumerate(self.phase, start=1))
 
 
 class Task(TaskParts):

@@ -76,7 +76,7 @@ def build(case: TaskCase) -> Experiment:
         believed=believed,
         plant=lambda felt: plant_of(case, robot, surface, made.references.start),
         source=lambda ahead: _source(case, made.references.source(ahead)),
-        sensing=Sensing(surface=surface_fit(case)),
+        sensing=Sensing(velocity_gain=case.velocity_share, surface=surface_fit(case)),
         channels=_FELT if case.force.along == "estimated" else (),
         torque_step=case.torque_step,
         joint_limits=case.joint_limits,

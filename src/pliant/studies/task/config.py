@@ -54,6 +54,7 @@ class TaskCase(TaskParts, CaseConfig):
             period=self.simulation.period,
             presses=self.tool.frame,
             surface=surface,
+            compensation=self.compensates,
             sensing_delay=self.timing.sensing_delay,
             computation_delay=self.timing.computation_delay,
             phases=SurfaceTaskSettings().touches,

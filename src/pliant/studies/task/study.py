@@ -98,7 +98,7 @@ def _draws(base: TaskCase, seeds: int | None) -> Sequence[Mapping[str, Any]]:
 def whole(name: str, values: Mapping[str, Any]) -> tuple[TaskStudy, TaskCase]:
     """A task without its file. Args: name: of the task; values: all of one run. Raises ConfigError."""
     case = validated(TaskCase, values)
-    return TaskStudy(name, {case.case: case}), case
+    return _kind(name, {case.case: case}), case
 
 
 def study_of(name: str) -> TaskStudy:
@@ -113,4 +113,15 @@ def study_of(name: str) -> TaskStudy:
         if variant in tasks:
             raise ConfigError(f"{found.path}: a variant cannot have the name of its file, {variant!r}")
         tasks[variant] = checked(found.path, overlaid(Task, found.task.model_dump(), changes))
-    return TaskStudy(name, {key: case_of(task, key) for key, task in tasks.items()})
+    return _kind(name, {key: case_of(task, key) for key, task in tasks.items()})
+
+
+def _kind(name: str, cases: Mapping[str, TaskCase]) -> TaskStudy:
+    """Of a path on a surface, or of a list of phases. Raises ConfigError where variants mix the two."""
+    from pliant.studies.task.list_study import ListStudy
+
+    lists = {key: bool(case.phase) for key, case in cases.items()}
+    if len(set(lists.values())) > 1:
+        odd = next(key for key, is_list in lists.items() if is_list is not next(iter(lists.values())))
+        raise ConfigError(f"{name}: its variant {odd!r} is of another kind: all have [[phase]], or none has")
+    return (ListStudy if any(lists.values()) else TaskStudy)(name, cases)

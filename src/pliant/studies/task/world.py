@@ -13,7 +13,7 @@ from pliant.configuration import validated
 from pliant.interfaces import Plant
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
-from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, MujocoPlant, Push, Scene
+from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, MujocoPlant, Push, Scene
 from pliant.simulation import Surface as Touch
 from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.scene import fixed_part
@@ -54,8 +54,13 @@ def imperfections_of(case: TaskCase) -> Imperfections:
     """Of sensors, drives and computation."""
     wanted = case.truth.imperfections
     if isinstance(wanted, dict):
-        return validated(Imperfections, wanted)
-    return Imperfections() if wanted == "none" else Imperfections.p3(pid=wanted == "p3")
+        found = validated(Imperfections, wanted)
+    elif wanted == "none":
+        return Imperfections()
+    else:
+        found = Imperfections.p3(pid=wanted == "p3")
+    damping = case.truth.joint_damping
+    return found.model_copy(update={"joint_damping": damping}) if damping else found
 
 
 def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array) -> Plant[Any]:
@@ -63,25 +68,28 @@ def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array) -
     tool = case.tool.frame
     imperfections = imperfections_of(case)
     perfect = imperfections == Imperfections()
-    heavier = _draw(case, "tool_mass", case.truth.tool_mass)
+    heavier = drawn_tool_mass(case)
     physics = MujocoPlant(
         robot_of(case, case.robot, heavier) if heavier else robot,
         Scene((fixed_part("part", surface.geometry, surface.touch),), case.simulation.contact),
         period=case.simulation.period if perfect else case.simulation.physics_step,
         physics_step=case.simulation.physics_step,
         start=start,
+        joints=JointEffects(case.truth.joint_friction, case.truth.joint_damping, case.compensates),
         sensors=[ForceSensor(tool)],
-        pushes=_pushes(case),
+        pushes=pushes_of(case),
         observe=[tool],
         speed_stop=SPEED_STOP,
     )
     if perfect:
         return physics
-    holding = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), start))
+    weight = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), start))
+    holding = weight if case.compensates == "none" else np.zeros(robot.n)
     return ImperfectPlant(physics, imperfections, seed=case.seed, period=case.simulation.period, holding_torque=holding)
 
 
-def _pushes(case: TaskCase) -> tuple[Push, ...]:
+def pushes_of(case: TaskCase) -> tuple[Push, ...]:
+    """From outside, as the seed draws their directions."""
     found: list[Push] = []
     rng = generator(case.seed, "pushes")
     for one in case.disturbance:
@@ -92,6 +100,11 @@ def _pushes(case: TaskCase) -> tuple[Push, ...]:
             force = (x, y, z)
         found.append(Push(one.frame, force, one.start, one.duration))
     return tuple(found)
+
+
+def drawn_tool_mass(case: TaskCase) -> float:
+    """kg of the real tool beside what is known."""
+    return _draw(case, "tool_mass", case.truth.tool_mass)
 
 
 def _draw(case: TaskCase, name: str, value: Drawn) -> float:

@@ -1,0 +1,175 @@
+"""Targets and wrenches one after the other: each stage ends by time, contact, force, depth or place, not by timetable
+alone; and what a user changes in between."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pliant.errors import ConfigError, RunFailedError
+from pliant.interfaces import ReferenceSource
+from pliant.robot import Robot
+from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
+from pliant.spatial import Array
+
+_ROUNDING = 1e-9  # s; times are sums of periods
+
+
+@dataclass(frozen=True)
+class Ending:
+    """What must hold together so that a stage ends."""
+
+    duration: float = 0.0
+    """s, at least, since it began"""
+    contact: bool | None = None
+    """whether contact is felt; None: either"""
+    force: float | None = None
+    """N along the stage's wrench, at least"""
+    depth: float | None = None
+    """m gone against the stage's wrench since it began, at least"""
+    reached: float | None = None
+    """m from the stage's target, at most"""
+    fails: bool = False
+    """whether the run is a failure when this ends the stage"""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One target with a wrench. Raises ConfigError on construction where an ending needs a wrench and there is none."""
+
+    name: str
+    task: TaskReference
+    endings: tuple[Ending, ...]
+    """any of which is enough"""
+
+    def __post_init__(self) -> None:
+        along = any(one.force is not None or one.depth is not None for one in self.endings)
+        if along and not np.any(self.task.wrench[:3]):
+            raise ConfigError(f"phase {self.name!r}: force and depth are along its wrench, which is zero")
+
+
+@dataclass(frozen=True)
+class StageChange:
+    """From a time on something is different: a target or wrench until the next stage, the rest until the end."""
+
+    time: float
+    """s since the start of the run"""
+    target: Array | None = None
+    """(3,) m"""
+    wrench: Array | None = None
+    """(6,) N and N·m"""
+    tuning: dict[str, Array] = field(default_factory=dict)
+    """field of the impedance's tuning → value"""
+    whole: dict[str, Any] = field(default_factory=dict)
+    """field of the controller's whole tuning → value"""
+
+
+class StageState(NamedTuple):
+    """Where the list is."""
+
+    stage: int
+    begin: float
+    """s of the loop's clock when the stage began"""
+    place: Array
+    """(3,) m, of the frame when the stage began"""
+    start: float
+    """s when the list began"""
+    done: int
+    """changes that were made"""
+    task: TaskReference
+    whole: Any
+
+
+class Stages(ReferenceSource[StageState]):
+    """The stages in order; the last one lasts.
+
+    Args:
+        robot: whose frame moves.
+        stages: at least one, all for the same frame.
+        tuning: impedance that every reference carries; None: the controller's own.
+        whole: tuning of the whole controller that every reference carries; None: its own.
+        changes: in any order.
+
+    Raises:
+        ConfigError: no stage, or a change of an impedance or a tuning that there is not.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        stages: Sequence[Stage],
+        tuning: ImpedanceTuning | None = None,
+        whole: Any = None,
+        changes: Sequence[StageChange] = (),
+    ) -> None:
+        if not stages:
+            raise ConfigError("a list of phases needs one at least")
+        self.stages, self._robot, self._whole = tuple(stages), robot, whole
+        self._tuning = tuning
+        self.changes = tuple(sorted(changes, key=lambda change: change.time))
+        self.frame = stages[0].task.frame
+        if tuning is None and any(change.tuning for change in changes):
+            raise ConfigError(f"the controller has no impedance at frame {self.frame!r} that an event could change")
+        if whole is None and any(change.whole for change in changes):
+            raise ConfigError("the controller has no parameters that references carry and an event could change")
+
+    def init(self, estimate: Estimate) -> StageState:
+        task = replace(self.stages[0].task, tuning=self._tuning)
+        return StageState(0, estimate.time, self._place(estimate), estimate.time, 0, task, self._whole)
+
+    def step(self, estimate: Estimate, state: StageState) -> tuple[Reference, StageState]:
+        """Raises RunFailedError where a timeout that is a failure ends a stage."""
+        state = self._changed(self._advanced(estimate, state), estimate.time)
+        name = self.stages[state.stage].name
+        return Reference(estimate.time, (state.task,), phase=name, tuning=state.whole), state
+
+    def _advanced(self, estimate: Estimate, state: StageState) -> StageState:
+        ending = next((one for one in self.stages[state.stage].endings if self._holds(one, estimate, state)), None)
+        if ending is None:
+            return state
+        if ending.fails:
+            raise RunFailedError(
+                f"phase {self.stages[state.stage].name!r} did not end within {ending.duration:g} s, and else = 'fail'"
+            )
+        if state.stage + 1 == len(self.stages):
+            return state
+        task = replace(self.stages[state.stage + 1].task, tuning=state.task.tuning)
+        return state._replace(stage=state.stage + 1, begin=estimate.time, place=self._place(estimate), task=task)
+
+    def _holds(self, ending: Ending, estimate: Estimate, state: StageState) -> bool:
+        if estimate.time - state.begin < ending.duration - _ROUNDING:
+            return False
+        if ending.contact is not None and estimate.contacts.get(self.frame, False) is not ending.contact:
+            return False
+        wrench = state.task.wrench[:3]
+        size = float(np.linalg.norm(wrench))
+        if ending.force is not None and size > 0.0:
+            felt = estimate.wrenches.get(self.frame)
+            if felt is None or float(felt[:3] @ wrench) < ending.force * size:
+                return False
+        if ending.depth is None and ending.reached is None:
+            return True
+        here = self._place(estimate)
+        if ending.reached is not None and float(np.linalg.norm(here - state.task.position)) > ending.reached:
+            return False
+        gone = 0.0 if size == 0.0 else float((state.place - here) @ wrench) / size
+        return ending.depth is None or gone >= ending.depth
+
+    def _changed(self, state: StageState, time: float) -> StageState:
+        while state.done < len(self.changes) and self.changes[state.done].time <= time - state.start + _ROUNDING:
+            change, task = self.changes[state.done], state.task
+            if change.target is not None:
+                task = replace(task, position=change.target)
+            if change.wrench is not None:
+                task = replace(task, wrench=change.wrench)
+            if change.tuning and task.tuning is not None:
+                task = replace(task, tuning=replace(task.tuning, **change.tuning))
+            whole = state.whole.model_copy(update=change.whole) if change.whole else state.whole
+            state = state._replace(done=state.done + 1, task=task, whole=whole)
+        return state
+
+    def _place(self, estimate: Estimate) -> Array:
+        return self._robot.placement(estimate.q, self.frame)[0]

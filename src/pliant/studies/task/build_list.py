@@ -1,0 +1,220 @@
+"""Wires the loop of a task that is a list of phases."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.entries import Believed, ControllerConfig
+from pliant.errors import ConfigError
+from pliant.experiments.model_error import with_mass_error
+from pliant.interfaces import Lookahead, Plant, ReferenceSource
+from pliant.references.foreseen import Foreseen
+from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
+from pliant.references.planners.superposition import MotionLimits
+from pliant.references.planners.workspace import workspace_of
+from pliant.references.postures.posture import PostureOptions
+from pliant.references.postures.posture_source import PostureSource, posture_source
+from pliant.references.source import FrameMotion
+from pliant.references.stages import Stages
+from pliant.references.trajectories.shapes import lemniscate, sine_line
+from pliant.references.trajectories.trajectory import Hold, Trajectory
+from pliant.robot import Robot
+from pliant.signals import ImpedanceTuning
+from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, MujocoPlant
+from pliant.simulation.seeding import generator
+from pliant.spatial import Array, frame_with_z_along
+from pliant.studies.task.config import TaskCase
+from pliant.studies.task.listed import (
+    changes_of,
+    frame_of,
+    per_axis,
+    robot_of_list,
+    scene_of,
+    stages_of,
+    tracks_of,
+)
+from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
+from pliant.tasks.phase import Track
+from pliant.telemetry.schema import Channel
+from pliant.wiring.estimators import Sensing
+from pliant.wiring.experiment import Experiment
+from pliant.wiring.wire import Offer, wired
+
+
+@dataclass(frozen=True)
+class Listed:
+    """What is known of a list before it runs."""
+
+    robot: Robot
+    believed: Believed
+    parameters: ControllerConfig
+    start: Array
+    """(n,) rad"""
+    duration: float
+    """s"""
+    tracked: PostureSource | None
+    """where frames are tracked"""
+
+
+def listed(case: TaskCase) -> Listed:
+    """Robot, belief and parameters of a run. Raises PliantError for what cannot be run."""
+    robot, tracking = robot_of_list(case), tracks_of(case)
+    if case.event and tracking:
+        raise ConfigError("events change targets, wrenches and impedances of phases with a target; this one tracks")
+    if tracking:
+        frames = tuple(case.phase[0].tracks)
+        source = _tracked(case, robot)
+        believed = _believed(case, frames, oriented=True, presses=None)
+        robot = robot if frames[0] == case.tool.frame else robot.with_contact(frames[0], case.tool.radius)
+        parameters = case.controller_parameters(robot, believed)
+        return Listed(robot, believed, parameters, source.start, _whole(case), source)
+    start = robot.home if case.start is None else robot.vector(np.radians(case.start), "start")
+    stages = stages_of(case, robot, robot.placement(start, frame_of(case))[1])
+    pressing = any(np.any(stage.task.wrench) for stage in stages)
+    oriented = all(stage.task.rotation is not None for stage in stages)
+    believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None)
+    return Listed(robot, believed, case.controller_parameters(robot, believed), start, _whole(case), None)
+
+
+def build_list(case: TaskCase) -> Experiment:
+    """Robot, plant, estimator, references and controller of one run.
+
+    Raises:
+        PliantError: a robot, frame or parameter that does not fit, or what cannot be run.
+    """
+    made = listed(case)
+    tracking = made.tracked is not None
+    frames = made.believed.frames
+    offer = Offer(
+        robot=made.robot,
+        model=with_mass_error(made.robot, case.truth.link_masses, generator(case.seed, "model.masses")),
+        believed=made.believed,
+        plant=lambda felt: _plant(case, made, felt),
+        source=lambda lookahead: _source(case, made, lookahead),
+        sensing=Sensing(felt=not tracking, velocity_gain=case.velocity_share, joint_memory=0.0),
+        torque_step=case.torque_step,
+        joint_limits=case.joint_limits,
+        duration=made.duration,
+        channels=() if tracking else (Channel(f"planner/{frames[0]}/clamped", "m"),),
+    )
+    return wired(case.entry, made.parameters, offer)
+
+
+def _believed(case: TaskCase, frames: tuple[str, ...], oriented: bool, presses: str | None) -> Believed:
+    sought = {name: one.touch is not None for name, one in zip(case.phase_names(), case.phase, strict=True)}
+    own = case.impedance
+    tuning = None if own is None else ImpedanceTuning(*map(per_axis, (own.stiffness, own.force_max, own.range)))
+    return Believed(
+        frames=frames,
+        period=case.simulation.period,
+        oriented=oriented,
+        presses=presses,
+        compensation=case.compensates,
+        sensing_delay=case.timing.sensing_delay,
+        computation_delay=case.timing.computation_delay,
+        phases=sought if any(sought.values()) else {},
+        tunings={} if tuning is None else {frames[0]: tuning},
+    )
+
+
+def _whole(case: TaskCase) -> float:
+    """s that all phases take at most, and a period more where a timeout has yet to be noticed.
+
+    Raises:
+        ConfigError: a phase that may never end.
+    """
+    for name, phase in zip(case.phase_names(), case.phase, strict=True):
+        if math.isinf(phase.longest):
+            raise ConfigError(
+                f"phase {name!r} may never end: until = {{ any = [{{ … }}, {{ timeout = 8.0 }}] }}, and else says what"
+                " then"
+            )
+    waits = any(one.timeout is not None for one in case.phase[-1].conditions)
+    return sum(phase.longest for phase in case.phase) + (case.simulation.period if waits else 0.0)
+
+
+def _source(case: TaskCase, made: Listed, lookahead: Lookahead | None) -> ReferenceSource[Any]:
+    if made.tracked is not None:
+        return made.tracked if lookahead is None else Foreseen(made.tracked, lookahead)
+    robot, frame = made.robot, frame_of(case)
+    stages = stages_of(case, robot, robot.placement(made.start, frame)[1])
+    tuning = made.believed.tunings.get(frame, made.parameters.impedances().get(frame))
+    wanted = Stages(robot, stages, tuning, made.parameters.whole_tuning(), changes_of(case))
+    limits = PlannerLimits(linear=MotionLimits(case.planner.speed, case.planner.acceleration))
+    return HarmonicPlanner(wanted, robot.placement, limits, {frame: workspace_of(robot, frame)})
+
+
+def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:
+    """The robot among its things, with its imperfections where there are any."""
+    imperfections, frames = imperfections_of(case), made.believed.frames
+    perfect = imperfections == Imperfections()
+    heavier = drawn_tool_mass(case)
+    truth = case.truth
+    plant = MujocoPlant(
+        robot_of_list(case, heavier) if heavier else made.robot,
+        scene_of(case),
+        period=case.simulation.period if perfect else case.simulation.physics_step,
+        physics_step=case.simulation.physics_step,
+        start=made.start,
+        joints=JointEffects(truth.joint_friction, truth.joint_damping, case.compensates),
+        sensors=[ForceSensor(frames[0])] if felt else [],
+        pushes=pushes_of(case),
+        observe=list(frames),
+    )
+    if perfect:
+        return plant
+    robot = made.robot
+    weight = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), made.start))
+    holding = weight if case.compensates == "none" else np.zeros(robot.n)
+    return ImperfectPlant(plant, imperfections, seed=case.seed, period=case.simulation.period, holding_torque=holding)
+
+
+def _tracked(case: TaskCase, robot: Robot) -> PostureSource:
+    """The motion of the first frame with the posture along it; found once for all runs of it."""
+    tracks_of(case)
+    parts = {"case", "robot", "locked", "tool", "moves", "phase"}
+    return _solved(
+        case.model_copy(update={"controller": "", "case": ""}).model_dump_json(include={*parts, "controller"})
+    )
+
+
+@lru_cache(maxsize=8)
+def _solved(text: str) -> PostureSource:
+    case = TaskCase.model_validate_json(text)
+    arm, (one,) = robot_of_list(case), case.phase
+    frames = list(one.tracks)
+    first, *others = (one.tracks[frame] for frame in frames)
+    if not isinstance(first, Track) or any(isinstance(other, Track) for other in others):
+        raise ConfigError(
+            "tracks: the first frame has a motion, and the others are 'posture', since one posture goes with one"
+            f" motion; got {frames}"
+        )
+    for frame in frames:
+        arm.frame_id(frame)
+    position, rotation = _motion(first, arm, frames[0])
+    motion = FrameMotion(frames[0], position, rotation).eased(first.ramp)
+    nominal = None if first.nominal is None else arm.vector(np.radians(first.nominal), "nominal")
+    options = PostureOptions(tolerance=np.inf if first.beyond_reach else 1e-3)
+    return posture_source(arm, motion, frames[1:], one.longest, nominal, options)
+
+
+def _motion(track: Track, robot: Robot, frame: str) -> tuple[Trajectory, Array]:
+    """Position over time, and R_world_frame that is held."""
+    home, turned = robot.placement(robot.home, frame)
+    rotation = turned if track.z_axis is None else frame_with_z_along(track.z_axis)
+    z = rotation[:, 2]
+    level = np.array([0.0, 0.0, 1.0]) if abs(z[2]) <= 0.9 else rotation[:, 0]
+    up = level - (level @ z) * z if track.up is None else np.array(track.up)
+    across = np.cross(up, z) if track.across is None else np.array(track.across)
+    centre = home if track.at is None else np.array(track.at)
+    if track.shape == "lemniscate":
+        return lemniscate(track.period, centre, *track.size, across, up), rotation
+    if track.shape == "line":
+        return sine_line(track.size[0], track.peak_speed, centre, across), rotation
+    return Hold(centre), rotation

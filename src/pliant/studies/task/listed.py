@@ -1,0 +1,198 @@
+"""A task that is a list of phases, as stages, things and changes; what no controller can do is refused here."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from pliant.errors import ConfigError, options
+from pliant.references.stages import Ending, Stage, StageChange
+from pliant.robot import Robot, Tool
+from pliant.signals import TaskReference
+from pliant.simulation import Ball, Box, Plane, Scene
+from pliant.simulation import Surface as Touch
+from pliant.simulation.scene import Thing
+from pliant.simulation.seeding import generator
+from pliant.spatial import Array
+from pliant.studies.task.config import TaskCase
+from pliant.tasks.draws import drawn
+from pliant.tasks.parts import Pose
+from pliant.tasks.phase import Condition, Event, PerAxis, Phase
+from pliant.tasks.phase import Thing as Described
+
+_CHANGES = ("target", "wrench", "stiffness", "force_max", "range", "reset")
+_TUNING, _WHOLE = ("stiffness", "force_max", "range"), ("reset",)
+
+
+def tracks_of(case: TaskCase) -> bool:
+    """Whether its phases track frames. Raises ConfigError for a list that does both, or tracks more than once."""
+    tracking = [bool(one.tracks) for one in case.phase]
+    if any(tracking) and len(tracking) > 1:
+        raise ConfigError(
+            "a phase with tracks is the only one of its task: what follows it would begin somewhere else; got"
+            f" {len(tracking)} phases"
+        )
+    return any(tracking)
+
+
+def frame_of(case: TaskCase) -> str:
+    """That targets and wrenches are for."""
+    return case.moves or case.tool.frame
+
+
+def robot_of_list(case: TaskCase, unknown_mass: float = 0.0) -> Robot:
+    """The robot, with the tool where the task moves the tool's frame. Args: unknown_mass: kg of the real tool."""
+    tool = case.tool
+    driven = [frame for one in case.phase for frame in one.tracks] or [frame_of(case)]
+    locked = None if case.locked is None else {joint: math.radians(angle) for joint, angle in case.locked.items()}
+    if tool.frame not in driven:
+        return Robot.load(case.robot, locked=locked)
+    made = Tool(tool.length, tool.mass + unknown_mass, tool.radius, tool.parent, tool.frame)
+    return Robot.load(case.robot, locked=locked, tool=made).with_contact(tool.frame, tool.radius)
+
+
+def scene_of(case: TaskCase) -> Scene:
+    """Everything that stands around."""
+    return Scene(tuple(_thing(name, one) for name, one in case.scene.items()), contact=case.simulation.contact)
+
+
+def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...]:
+    """The phases; what one leaves out is as in the one before. Args: rotation: R_world_frame where it is held.
+
+    Raises:
+        ConfigError: a thing that there is not, or something that no controller can do.
+    """
+    frame, target, wrench, held = frame_of(case), None, np.zeros(6), False
+    robot.frame_id(frame)
+    found: list[Stage] = []
+    for name, phase in zip(case.phase_names(), case.phase, strict=True):
+        axes, origin = _axes(case, name, phase)
+        _possible(case, name, phase)
+        if phase.target is not None:
+            target = origin + axes @ np.array(phase.target)
+        if target is None:
+            raise ConfigError(f"phase {name!r}: the first phase needs a target")
+        if phase.wrench is not None:
+            told = np.array([*phase.wrench, *([0.0] * (6 - len(phase.wrench)))])
+            wrench, held = np.concatenate([axes @ told[:3], axes @ told[3:]]), len(phase.wrench) == 6
+        if phase.modes is not None:
+            held = "free" not in phase.modes[3:]
+        task = TaskReference(frame, target, rotation if held else None, wrench=wrench)
+        endings = tuple(_ending(one, phase.otherwise) for one in phase.conditions)
+        found.append(Stage(name, task, endings))
+    return tuple(found)
+
+
+def changes_of(case: TaskCase) -> tuple[StageChange, ...]:
+    """The events, at times that the seed draws. Raises ConfigError for something that no event can change."""
+    return tuple(
+        _change(case, index, one, drawn(one.time, generator(case.seed, f"event.{index}")))
+        for index, one in enumerate(case.event, start=1)
+    )
+
+
+def per_axis(value: PerAxis) -> Array:
+    """(3,)."""
+    return np.broadcast_to(np.asarray(value, dtype=np.float64), 3).copy()
+
+
+def _possible(case: TaskCase, name: str, phase: Phase) -> None:
+    if phase.motion is not None:
+        raise ConfigError(
+            f"phase {name!r}: a motion along its free axes while others press cannot be run yet; give a target, or"
+            " several phases with targets"
+        )
+    if phase.limit is not None:
+        raise ConfigError(f"phase {name!r}: limit cannot be run yet; planner.speed bounds the motion of targets")
+    if phase.touch is not None and phase.touch not in case.scene:
+        raise ConfigError(f"phase {name!r}: touch names no thing of the scene; {options(case.scene, phase.touch)}")
+    if phase.modes is None:
+        return
+    wrench = np.zeros(6) if phase.wrench is None else np.array([*phase.wrench, *([0.0] * (6 - len(phase.wrench)))])
+    axes = ("x", "y", "z", "about x", "about y", "about z")
+    silent = [axis for axis, mode, size in zip(axes, phase.modes, wrench, strict=True) if mode == "force" and not size]
+    if silent:
+        raise ConfigError(
+            f"phase {name!r}: modes ask for a force of zero ({', '.join(silent)}), which no controller regulates yet:"
+            " give these axes a wrench, or make them motion, or all three rotations free"
+        )
+    if "free" in phase.modes[:3]:
+        raise ConfigError(f"phase {name!r}: no controller leaves single translations free; modes: motion or force")
+    rotations = phase.modes[3:]
+    if "free" in rotations and set(rotations) != {"free"}:
+        raise ConfigError(f"phase {name!r}: the three rotations are free together or not at all")
+    both = [axis for axis, mode, size in zip(axes, phase.modes, wrench, strict=True) if mode != "force" and size]
+    if both:
+        raise ConfigError(f"phase {name!r}: wrench presses along axes whose mode is not force: {', '.join(both)}")
+
+
+def _axes(case: TaskCase, name: str, phase: Phase) -> tuple[Array, Array]:
+    """R_world_frame (3, 3) and origin (3,) m of what a phase's numbers are in."""
+    if isinstance(phase.frame, Pose):
+        return phase.frame.rotation, np.array(phase.frame.xyz)
+    if phase.frame == "world":
+        return np.eye(3), np.zeros(3)
+    if phase.frame not in case.scene:
+        known = ["world", *case.scene]
+        raise ConfigError(
+            f"phase {name!r}: frame is world, a thing of the scene or a pose; {options(known, phase.frame)}"
+        )
+    pose = case.scene[phase.frame].pose
+    return pose.rotation, np.array(pose.xyz)
+
+
+def _ending(condition: Condition, otherwise: str) -> Ending:
+    if condition.timeout is not None:
+        return Ending(condition.timeout, fails=otherwise == "fail")
+    return Ending(condition.duration or 0.0, condition.contact, condition.force, condition.depth, condition.reached)
+
+
+def _change(case: TaskCase, index: int, event: Event, time: float) -> StageChange:
+    target, wrench = None, None
+    tuning: dict[str, Array] = {}
+    whole: dict[str, Any] = {}
+    for key, value in event.change.items():
+        parts = key.split(".")
+        name = parts[-1]
+        if len(parts) == 3 and parts[0] == "controller" and parts[1] != case.controller:
+            continue  # of another controller than the one that runs
+        if name not in _CHANGES or len(parts) not in (1, 3):
+            raise ConfigError(f"event {index}: nothing online is called {key!r}; {options(_CHANGES, name)}")
+        if name in _WHOLE:
+            if not isinstance(value, bool):
+                raise ConfigError(f"event {index}: {key} is true or false, got {value!r}")
+            whole[name] = value
+            continue
+        sizes = {"target": (3,), "wrench": (3, 6)}.get(name, (1, 3))
+        numbers = _numbers(index, key, value, sizes)
+        if name == "target":
+            target = numbers
+        elif name == "wrench":
+            wrench = np.concatenate([numbers, np.zeros(6 - len(numbers))])
+        else:
+            tuning[name] = per_axis(numbers if len(numbers) == 3 else float(numbers[0]))  # type: ignore[arg-type]
+    return StageChange(time, target, wrench, tuning, whole)
+
+
+def _numbers(index: int, key: str, value: Any, sizes: tuple[int, ...]) -> Array:
+    try:
+        found = np.atleast_1d(np.asarray(value, dtype=np.float64))
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.ndim != 1 or len(found) not in sizes or not np.isfinite(found).all():
+        wanted = " or ".join(str(size) for size in sizes)
+        raise ConfigError(f"event {index}: {key} is {wanted} numbers, got {value!r}")
+    return found
+
+
+def _thing(name: str, one: Described) -> Thing:
+    touch = Touch(one.stiffness, one.damping, one.friction, one.friction_moving)
+    if one.shape == "plane":
+        x, y, z = (float(entry) for entry in one.pose.rotation[:, 2])
+        return Plane(name, one.pose.xyz, (x, y, z), touch, (0.6, 0.6))
+    if one.shape == "ball":
+        return Ball(name, one.radius, one.pose.xyz, one.mass, touch)
+    roll, pitch, yaw = (math.radians(angle) for angle in one.pose.rpy)
+    return Box(name, one.size, one.pose.xyz, one.mass, (roll, pitch, yaw), touch)
