@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, RobotError, ShapeError, SignalError
 from pliant.estimation import CarriedMass, WrenchEstimator, excitation, identification_poses, identify_tool
+from pliant.estimation.identification_poses import _smallest_singular_value
 from pliant.robot import Robot
 from pliant.signals import Measurement
 from pliant.spatial import exp3
@@ -146,3 +148,15 @@ def test_bad_input_is_named(lwr4: Robot) -> None:
         identification_poses(lwr4, "flange", 6, share=0.0)
     with pytest.raises(RobotError, match="no frame"):
         identification_poses(lwr4, "flang")
+
+
+@pytest.mark.parametrize(("name", "frame", "rows"), [("ur5e", "flange", 6), ("leg3", "foot", 3)])
+def test_a_robot_that_can_turn_its_tool_freely_is_measured_in_all_six_directions(
+    name: str, frame: str, rows: int
+) -> None:
+    robot = Robot.load(name)
+    data, index = robot.model.createData(), robot.frame_id(frame)
+    q = robot.home + 0.1
+    J = pin.computeFrameJacobian(robot.model, data, q, index, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
+    least = float(np.linalg.svd(J[:rows], compute_uv=False)[-1])
+    assert _smallest_singular_value(robot, robot.model.createData(), q, index) == pytest.approx(least, rel=1e-9)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import random
 import socket
+import struct
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import SimpleNamespace
@@ -108,3 +110,22 @@ def test_an_answer_that_was_lost_with_its_worker_is_not_waited_for(monkeypatch: 
     stop.set()
     with pytest.raises(KeyboardInterrupt):
         list(cluster._DaskPool(cast("Any", _Client()), "tcp://a:1", stop)(abs, [1]))
+
+
+def test_a_scheduler_that_takes_its_time_to_speak_is_waited_for() -> None:
+    greeting = b"pickle-protocol".ljust(min(cluster._GREETING), b" ")
+    with socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        listening.listen()
+
+        def speak() -> None:
+            line, _ = listening.accept()
+            with line:
+                for part in (struct.pack("<Q", len(greeting)), greeting):
+                    time.sleep(0.3)
+                    line.sendall(part)
+
+        speaker = threading.Thread(target=speak, daemon=True)
+        speaker.start()
+        cluster._knock("127.0.0.1", listening.getsockname()[1])
+        speaker.join(10.0)

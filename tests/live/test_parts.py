@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from pliant.live.loop.requests import Desk, Wishes
 from pliant.live.loop.steered_plant import SteeredPlant
 from pliant.live.page.fields import group_of, nested
 from pliant.live.page.form import parsed
+from pliant.live.page.pushes import PushControls
 from pliant.live.page.world_form import SceneForm
 from pliant.live.server.closed import _quiet
 from pliant.robot import Robot
@@ -187,3 +189,12 @@ def test_what_cannot_be_built_is_refused_beforehand() -> None:
 
 def test_what_strangers_send_is_not_printed_however_bad() -> None:
     assert not _quiet().isEnabledFor(logging.CRITICAL)
+
+
+def test_the_frame_to_push_is_the_chosen_one_or_the_last() -> None:
+    pushes = object.__new__(PushControls)
+    pushes._frame = SimpleNamespace(options=("none",), value="none")  # type: ignore[assignment]
+    pushes.offer(("shoulder", "elbow", "flange"), "elbow")
+    assert pushes.frame == "elbow"
+    pushes.offer(("shoulder", "elbow", "tool"), "nowhere")
+    assert pushes.frame == "tool"

@@ -103,6 +103,7 @@ def test_a_task_is_checked_before_it_runs(tmp_path: Path, monkeypatch: pytest.Mo
     assert done.exit_code == 0, done.output
     assert "possible on the believed surface and on 10 drawn ones" in done.output
     assert list(tmp_path.rglob("wipe_check.png"))
+    assert "drawn 1" not in done.output  # of those that are possible, the believed surface alone is printed
     heavy = CLI.invoke(app, ["task", "check", "wipe", *short, "--set", "force.normal=900"])
     assert heavy.exit_code == 1, heavy.output
     assert "not possible on the believed surface" in heavy.output

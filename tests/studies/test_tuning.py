@@ -5,12 +5,14 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from pliant.cli import tune
 from pliant.errors import ConfigError
 from pliant.experiments.registry import get_study
-from pliant.experiments.search import search
+from pliant.experiments.search import Trial, search
 from pliant.experiments.tuning import PENALTY, Range, Tuning, find_tuning, nested
 from tests.studies import toy
 from tests.studies.commands import study
@@ -60,3 +62,30 @@ def test_the_command_writes_the_same_trials_on_one_process_and_on_two(tmp_path: 
     code, _, errors = study("toy", "--tune", "nobody", "--out", tmp_path)
     assert code == 2
     assert "valid: 'idle', 'other'" in errors
+
+
+@pytest.mark.parametrize("trials", [1, 10])
+def test_as_many_trials_are_made_as_asked_for(trials: int) -> None:
+    assert len(list(search("toy", toy.STUDY.tuning("idle"), trials, seed=1))) == trials
+
+
+def test_the_table_of_a_search_has_the_start_beside_the_best() -> None:
+    tuning = toy.STUDY.tuning("idle")
+    values = ({"gains.a": 1.0, "gains.b": 5.0}, {"gains.a": 0.1, "gains.b": 2.0}, {"gains.a": 9.0, "gains.b": 9.0})
+    made = [Trial(i, values[i], objective, 0) for i, objective in enumerate((10.1, 0.1, 55.0))]
+    table = tune._start_and_best(tuning, made, made[1], {"study": "toy", "controller": "idle"})
+    columns = [list(column.cells) for column in table.columns]
+    assert columns[0] == ["gains.a", "gains.b", "objective"]
+    assert columns[1] == ["1.00", "5.00", "10.1"]
+    assert columns[2] == ["0.100", "2.00", "0.100"]
+
+
+def test_what_only_got_the_penalty_is_drawn_as_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tuning = toy.STUDY.tuning("idle")
+    seen: list[np.ndarray] = []
+    monkeypatch.setattr("pliant.telemetry.plots.trials", lambda judged, *_: seen.append(judged))
+    monkeypatch.setattr("pliant.telemetry.plots.save", lambda figure, path: path)
+    start = dict(tuning.start)
+    made = [Trial(0, start, 2.0, 0), Trial(1, start, PENALTY, 0), Trial(2, start, 3.0, 1)]
+    tune._draw(tuning, made, {"study": "toy", "controller": "idle"}, tmp_path / "x.png")
+    np.testing.assert_array_equal(seen[0], [2.0, np.nan, np.nan])
