@@ -4,6 +4,7 @@
     python benchmarks/tasks.py --size 0.12,0.02                 two lines and the turn between them
     python benchmarks/tasks.py --perfect                        perfect arms, surfaces where they are believed
     python benchmarks/tasks.py --controller haptic --seeds 1
+    python benchmarks/tasks.py --docs docs/tasks.md matrix      the table goes between <!-- matrix --> and <!-- end -->
 
 One line a run, then a table in Markdown: the mean over the seeds that did not fail of the mean force error, the worst
 of the other metrics, and how many runs failed (the arm stopped, no contact found, or a force above `limits.force`).
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from pliant.configuration import merged
 from pliant.errors import PliantError
@@ -68,6 +70,15 @@ def table(found: Mapping[tuple[str, str], Sequence[Result | str]]) -> str:
     return "\n".join((f"{head} path_error, mm |", f"|---|---|{7 * '---:|'}", *rows))
 
 
+def put_into(file: Path, name: str, text: str) -> None:
+    """Replaces what stands between the comments `name` and `end` of a Markdown file."""
+    before, begin, rest = file.read_text(encoding="utf-8").partition(f"<!-- {name} -->\n")
+    _, end, after = rest.partition("<!-- end -->")
+    if not begin or not end:
+        raise SystemExit(f"{file} has no place <!-- {name} --> … <!-- end -->")
+    file.write_text(f"{before}{begin}{text}\n{end}{after}", encoding="utf-8")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tasks", default=",".join(TASKS))
@@ -76,6 +87,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=None, help="default: 3, or 1 with --perfect")
     parser.add_argument("--size", default="", help="of the raster, m,m; default: the task's")
     parser.add_argument("--perfect", action="store_true")
+    parser.add_argument("--docs", nargs=2, metavar=("FILE", "NAME"), help="where the table is written, too")
     asked = parser.parse_args()
     pairs = [(task, robot) for task in asked.tasks.split(",") for robot in asked.robots.split(",")]
     found: dict[tuple[str, str], list[Result | str]] = {pair: [] for pair in pairs}
@@ -91,6 +103,8 @@ def main() -> None:
     except KeyboardInterrupt:
         print("interrupted")
     print("\n" + table(found))
+    if asked.docs:
+        put_into(Path(asked.docs[0]), asked.docs[1], table(found))
 
 
 if __name__ == "__main__":

@@ -76,13 +76,18 @@ def test_what_is_worse_costs_more() -> None:
         assert cost(**{name: value + 1.0}) > cost()
 
 
-def test_a_search_on_a_file_writes_what_run_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("controller", ["operational-space", "mine.py:MyController"])
+def test_a_search_on_a_file_writes_what_run_reads(
+    controller: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """For a controller of the package, and for a class of the user's own."""
     monkeypatch.chdir(tmp_path)
+    if ":" in controller:
+        assert CLI.invoke(app, ["new", "controller", "MyController", "-o", "mine.py"]).exit_code == 0
     name = Path(written(tmp_path, "[tune]\nstiffness = [100.0, 900.0]\n")).name
-    controller = "operational-space"
     done = CLI.invoke(app, ["study", name, "--tune", controller, "--trials", "1", "--case", "soft"])
     assert done.exit_code == 0, done.output
-    folder = tmp_path / "pliant-out" / "press-once-tune-operational-space"
+    (folder,) = (tmp_path / "pliant-out").glob("press-once-tune-*")
     tuned = tomllib.loads((folder / "tuned.toml").read_text())
     assert (tuned["study"], tuned["case"], tuned["controller"]) == (name, "soft", controller)
     assert 100.0 <= tuned["control"][controller]["stiffness"] <= 900.0

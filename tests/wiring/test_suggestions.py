@@ -57,3 +57,13 @@ class Own(Controller[None]):
 
 def test_the_first_line_of_a_controllers_own_text_is_its_summary() -> None:
     assert entry_of(Own, "mine:Own").summary == "The first line says what it is."
+
+
+@pytest.mark.parametrize(("late", "stiffness"), [(1e-3, 60.0), (2e-3, 60.0), (6e-3, 60.0 * 3.0 / 7.0)])
+def test_a_wrist_turns_more_softly_in_a_later_loop(late: float, stiffness: float, lwr4: Robot) -> None:
+    """At most 60 N·m/rad · 3 ms / lateness; the position keeps its gains."""
+    entry = find_controller("stack")
+    believed = Believed(("flange", "elbow"), 1e-3, computation_delay=late)
+    tool = entry.suggest(lwr4, entry.default, believed).tasks["ee"]
+    assert tool.rotation.stiffness == pytest.approx(stiffness)
+    assert tool.translation.stiffness == 2500.0
