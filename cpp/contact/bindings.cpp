@@ -60,7 +60,7 @@ class ContactLoop {
   std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material, bool hollow) {
     if (geom_a < 0 || geom_b < 0 || geom_a >= views_.ngeom || geom_b >= views_.ngeom)
       throw std::invalid_argument("a contact pair names a geom that the model does not have");
-    require_size(material.size(), 8, "material");
+    require_size(material.size(), kMaterialSize, "material");
     const double* m = material.data();
     const Material made{m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]};
     const int first = world_.add_pair(views_, geom_a, geom_b, made, hollow);
@@ -110,6 +110,9 @@ class ContactLoop {
 
 NB_MODULE(_contact, m) {
   m.attr("BRISTLE_SIZE") = kBristleSize;
+  nb::list material;
+  for (const char* name : kMaterialNames) material.append(nb::str(name));
+  m.attr("MATERIAL") = nb::tuple(material);
   nb::class_<ContactLoop>(m, "ContactLoop")
       .def(nb::init<nb::object, nb::object, uintptr_t, uintptr_t>(), "model"_a, "data"_a, "step1"_a, "step2"_a)
       .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a, "hollow"_a = false)

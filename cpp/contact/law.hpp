@@ -19,6 +19,14 @@ struct Material {
   double tangential_damping;    // N s/m of the bristle
 };
 
+// Names of the fields in their order, for who fills a Material from a row of numbers.
+constexpr const char* kMaterialNames[] = {
+    "stiffness",  "damping",           "transition",           "mu_static",
+    "mu_dynamic", "critical_velocity", "tangential_stiffness", "tangential_damping",
+};
+constexpr int kMaterialSize = sizeof(kMaterialNames) / sizeof(kMaterialNames[0]);
+static_assert(sizeof(Material) == kMaterialSize * sizeof(double), "every number of a material has a name");
+
 // Memory of one contact point.
 struct Bristle {
   Vec3 deflection;     // m, in the tangent plane, of body A against body B
@@ -26,6 +34,7 @@ struct Bristle {
   double sliding;      // 1 if the bristle gave way in the last step, else 0
 };
 constexpr int kBristleSize = 5;
+static_assert(sizeof(Bristle) == kBristleSize * sizeof(double), "a bristle is a view of so many doubles");
 
 // The coefficient follows its target with this time constant, divided by 1 + |v|/v_c. Without the lag, breaking away
 // and sticking again alternate from one step to the next and the force has jumps of (mu_s - mu_d) F_n.

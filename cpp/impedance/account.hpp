@@ -28,6 +28,13 @@ struct AccountConfig {
   double forgiveness;  // share of the debt beyond the tolerance that is written off per period
 };
 
+// What Python hands over, in the order of AccountConfig's fields after the period.
+constexpr const char* kAccountNames[] = {
+    "deposit",       "ceiling", "savings",      "spend",   "damping", "tolerance", "speed",
+    "speed_angular", "kick",    "kick_angular", "trickle", "trust",   "peak_keep", "forgiveness",
+};
+constexpr int kAccountNumbers = sizeof(kAccountNames) / sizeof(kAccountNames[0]);
+
 // State of one axis between two ticks; doubles only.
 struct AccountState {
   double balance;    // J taken in beyond what is stored

@@ -119,7 +119,7 @@ AxisConfig axis_config(const std::string& law, double period, double rate_gain, 
   config.account.period = period;
   if (!config.account.active) return config;
   const auto values = nb::cast<ConstVector>(account);
-  expect(values.shape(0), 14, "account");
+  expect(values.shape(0), kAccountNumbers, "account");
   const double* v = values.data();
   config.account = {true, period,       v[0],         v[1],  v[2],  v[3],  v[4],
                     v[5], {v[6], v[7]}, {v[8], v[9]}, v[10], v[11], v[12], v[13]};
@@ -167,10 +167,21 @@ void drive_axis(const std::string& law, double period, double rate_gain, double 
   }
 }
 
+template <std::size_t N>
+nb::tuple names(const char* const (&list)[N]) {
+  nb::list made;
+  for (const char* name : list) made.append(nb::str(name));
+  return nb::tuple(made);
+}
+
 }  // namespace
 
 NB_MODULE(_impedance, m) {
   m.doc() = "Compiled core of the stack of fractal impedance tasks; `pliant.controllers.stack` is its typed face.";
+  m.attr("ENERGIES") = names(Stack::kEnergyNames);
+  m.attr("AXIS_ROWS") = names(Task::kRowNames);
+  m.attr("TASK_SUMS") = names(Task::kSumNames);
+  m.attr("ACCOUNT") = names(kAccountNames);
   nb::class_<Stack>(m, "Stack")
       .def("__init__", &build, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
            nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(), nb::arg("torque_limit"),

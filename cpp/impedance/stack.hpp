@@ -10,6 +10,9 @@ namespace pliant::impedance {
 class Stack {
  public:
   enum Energy { kStored, kSupplied, kDelivered, kDissipated, kTuning, kClamped, kSpendable, kEnergies };
+  static constexpr const char* kEnergyNames[] = {"stored", "supplied", "delivered", "dissipated",
+                                                 "tuning", "clamped",  "spendable"};
+  static_assert(sizeof(kEnergyNames) / sizeof(kEnergyNames[0]) == kEnergies, "every energy has a name");
   static constexpr int kHeader = 2;  // whether it has begun, J kept back by clamps
   static constexpr int kTaskState = sizeof(TaskState) / sizeof(double);
 

@@ -52,8 +52,13 @@ struct TaskMotion {
 
 class Task {
  public:
-  static constexpr int kRows = 8;  // force, error, rate, threshold, converging, turning, margin, balance: (k) each
-  static constexpr int kSums = 5;  // stored, supplied, dissipated, tuning, moment scale
+  // Channels of one task, in the order in which report() and step() write them: the wrench (6), rows (k) each, sums.
+  static constexpr const char* kRowNames[] = {"force", "error",         "rate",           "rate_threshold",
+                                              "phase", "turning_point", "storage_margin", "account"};
+  static constexpr const char* kSumNames[] = {"energy_stored", "energy_supplied", "energy_dissipated", "energy_tuning",
+                                              "moment_scale"};
+  static constexpr int kRows = sizeof(kRowNames) / sizeof(kRowNames[0]);
+  static constexpr int kSums = sizeof(kSumNames) / sizeof(kSumNames[0]);
 
   Task(const AxisConfig& axis, TaskConfig config) : axis_(axis), config_(std::move(config)) {}
 

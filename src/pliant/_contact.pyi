@@ -7,6 +7,9 @@ from pliant.spatial import Array
 BRISTLE_SIZE: int
 """doubles of state per contact point: deflection (3) m, friction coefficient, sliding (0 or 1)"""
 
+MATERIAL: tuple[str, ...]
+"""names of the numbers in `material`"""
+
 class ContactLoop:
     """Contacts of one MuJoCo model and data, and the loop of mj_step1, forces, mj_step2.
 

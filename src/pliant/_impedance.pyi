@@ -3,6 +3,15 @@
 from numpy import float64
 from numpy.typing import NDArray
 
+ENERGIES: tuple[str, ...]
+"""names of the totals in `out`, after torque and clamped torque (n) each"""
+AXIS_ROWS: tuple[str, ...]
+"""names of what a task reports of each of its axes, after its wrench (6)"""
+TASK_SUMS: tuple[str, ...]
+"""names of what a task reports once, after the rows of its axes"""
+ACCOUNT: tuple[str, ...]
+"""names of the numbers in `account`"""
+
 class Stack:
     """Phase logic, force laws, torque and energy ledger of several tasks. Holds no state between two steps.
 

@@ -1,62 +1,18 @@
 // The core without Python: every model solves, nothing is taken from the heap while it does, plans stay finite.
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <stdexcept>
 #include <vector>
 
+#include "../../tests/checks.hpp"
 #include "../dispatch.hpp"
 #include "../validate.hpp"
-
-namespace {
-
-int allocations = 0;
-int failures = 0;
-
-void check(bool ok, const char* what, const char* where) {
-  if (ok) return;
-  ++failures;
-  std::printf("FAILED: %s (%s)\n", what, where);
-}
-
-}  // namespace
-
-// The linker sends every heap call of this program's objects here (see CMakeLists.txt).
-extern "C" {
-void* __real_malloc(std::size_t);
-void* __real_calloc(std::size_t, std::size_t);
-void* __real_realloc(void*, std::size_t);
-void* __real_aligned_alloc(std::size_t, std::size_t);
-int __real_posix_memalign(void**, std::size_t, std::size_t);
-void* __wrap_malloc(std::size_t n) { return ++allocations, __real_malloc(n); }
-void* __wrap_calloc(std::size_t n, std::size_t s) { return ++allocations, __real_calloc(n, s); }
-void* __wrap_realloc(void* p, std::size_t n) { return ++allocations, __real_realloc(p, n); }
-void* __wrap_aligned_alloc(std::size_t a, std::size_t n) { return ++allocations, __real_aligned_alloc(a, n); }
-int __wrap_posix_memalign(void** p, std::size_t a, std::size_t n) {
-  return ++allocations, __real_posix_memalign(p, a, n);
-}
-}
-void* operator new(std::size_t n) {
-  ++allocations;
-  if (void* p = __real_malloc(n)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace pliant::mpc {
 namespace {
 
-// A deterministic source of numbers in (−1, 1).
-struct Noise {
-  unsigned state = 1;
-  double operator()() {
-    state = state * 1664525u + 1013904223u;
-    return 2.0 * (state >> 8) / 16777216.0 - 1.0;
-  }
-};
+using namespace pliant::testing;
 
 void identity(double* R) {
   for (int i = 0; i < 9; ++i) R[i] = i % 4 == 0;
@@ -200,6 +156,5 @@ int main() {
     return 77;
   }
   pliant::mpc::run();
-  std::printf(failures ? "%d checks failed\n" : "all checks passed\n", failures);
-  return failures ? 1 : 0;
+  return pliant::testing::result();
 }

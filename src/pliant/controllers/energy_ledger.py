@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from pliant.errors import ShapeError
 from pliant.spatial import Array
 
 TOTALS = ("stored", "supplied", "delivered", "dissipated", "tuning", "clamped", "spendable")
@@ -78,6 +79,16 @@ def channel_table(joints: int, tasks: Sequence[tuple[str, int]], account: bool =
         table[f"{label}/{MOMENT_SCALE}"] = Channel(place, 0, "1")
         place += 1
     return table
+
+
+def require_length(table: Mapping[str, Channel], numbers: int) -> None:
+    """Raises ShapeError unless the channels end where the output of the compiled core ends."""
+    end = max(channel.start + max(channel.size, 1) for channel in table.values())
+    if end != numbers:
+        raise ShapeError(
+            f"channels of the ledger end at {end} numbers, the compiled core writes {numbers}; "
+            "compile pliant again: the core is of another version"
+        )
 
 
 class Diagnostics(Mapping[str, "float | Array"]):

@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from pliant import _impedance
 from pliant.controllers.attractor import Law, PhaseSettings
-from pliant.controllers.energy_ledger import Channel, Diagnostics, channel_table
+from pliant.controllers.energy_ledger import Channel, Diagnostics, channel_table, require_length
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.profiles import linear_range
 from pliant.controllers.task import FrameTask
@@ -120,6 +120,7 @@ class Stack(Controller[StackState]):
         )
         labels_and_axes = [(task.label, task.axes) for task in self.tasks]
         self._table = channel_table(robot.n, labels_and_axes, account=self.law is Law.CAPPED)
+        require_length(self._table, self._core.output_size)
 
     @property
     def needs(self) -> Needs:
