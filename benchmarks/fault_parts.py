@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from pliant.environment import Environment
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
-from pliant.signals import Command, Environment, Estimate, Measurement, Reference, Truth
+from pliant.signals import Command, Estimate, Measurement, Reference, Truth
 
 SHARE = 0.15  # of the ticks in which a fault begins
 FROZEN_FOR = 4  # ticks

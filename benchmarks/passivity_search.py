@@ -17,7 +17,7 @@ from pliant.controllers import presets
 from pliant.controllers.passivity_search import Sampling, search
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.signals import ImpedanceTuning
-from pliant.studies.haptic.config import Impedance
+from pliant.studies.haptic.steps_config import Impedance
 
 BOUNDS = ((1e-3, math.inf), (1e-3, 300.0), (3e-3, 100.0))
 """(period in s, largest acceleration in m/s²)"""

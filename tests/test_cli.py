@@ -198,7 +198,7 @@ def test_bad_input_gets_one_sentence_and_exit_code_2(
 
 
 def test_doctor_and_list_say_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pliant.cli.app._out", Console(width=160))
+    monkeypatch.setattr("pliant.cli.program.out", Console(width=160))
     doctor = CLI.invoke(app, ["doctor"])
     assert doctor.exit_code == 0, doctor.output
     assert "mujoco" in doctor.stdout

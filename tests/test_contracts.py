@@ -109,3 +109,38 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
     # Baseline: one import upwards closes a circle, and all of it is named.
     closed = graph | {"pliant.telemetry.summary": {*graph["pliant.telemetry.summary"], "pliant.experiments.case"}}
     assert {"pliant.experiments.case", "pliant.telemetry.summary"} <= set(circle_in(closed))
+
+
+MOST_LINES, MOST_LINES_OF_A_FUNCTION = 250, 60
+LONG_FUNCTIONS = {"src/pliant/loop.py:run"}
+"""`loop.run` is the flow of the whole package on one screen, and a third of it is its docstring"""
+
+
+def sources(*suffixes: str) -> list[Path]:
+    return sorted(
+        path for folder in ("src/pliant", "cpp") for path in (ROOT / folder).rglob("*") if path.suffix in suffixes
+    )
+
+
+def long_functions(path: Path) -> list[str]:
+    """Functions of a file, as FILE:NAME, that are longer than they may be."""
+    return [
+        f"{path.relative_to(ROOT) if path.is_relative_to(ROOT) else path.name}:{node.name}"
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
+        and (node.end_lineno or node.lineno) - node.lineno + 1 > MOST_LINES_OF_A_FUNCTION
+    ]
+
+
+def test_files_and_functions_are_short() -> None:
+    lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in sources(".py", ".hpp", ".cpp")}
+    assert len(lines) > 300  # it found them
+    assert {str(path.relative_to(ROOT)): count for path, count in lines.items() if count > MOST_LINES} == {}
+    assert {name for path in sources(".py") for name in long_functions(path)} == LONG_FUNCTIONS
+
+
+def test_a_long_function_would_be_noticed(tmp_path: Path) -> None:
+    path = tmp_path / "long.py"
+    for statements, found in ((MOST_LINES_OF_A_FUNCTION - 1, []), (MOST_LINES_OF_A_FUNCTION, ["long.py:long"])):
+        path.write_text("def long() -> None:\n" + "    pass\n" * statements)
+        assert long_functions(path) == found

@@ -10,13 +10,14 @@ import pytest
 
 from pliant import loop
 from pliant.controllers.step_limit import StepLimit
+from pliant.environment import Environment
 from pliant.errors import ConfigError, RunFailedError, ShapeError
 from pliant.guard import Fault, Guard, Watched
 from pliant.interfaces import Controller, Plant
 from pliant.mpc import ForceFeedbackMpc
 from pliant.mpc.plan import Plan, torque_from
 from pliant.robot import Robot
-from pliant.signals import Command, Environment, Estimate, Measurement, Preview, Reference, TaskReference
+from pliant.signals import Command, Estimate, Measurement, Preview, Reference, TaskReference
 
 PERIOD = 1e-3  # s
 

@@ -15,7 +15,7 @@ from pliant.robots.assembly import assemble
 from pliant.robots.locking import lock
 from pliant.robots.tool import Tool as Tool
 from pliant.robots.tool import with_rod
-from pliant.spatial import Array
+from pliant.spatial import Array, is_rotation
 
 _WORLD = "universe"
 """pinocchio's name of what is not part of the robot"""
@@ -186,8 +186,6 @@ class Robot:
         pose = data.oMf[self.frame_id(frame)]
         return np.array(pose.translation), np.array(pose.rotation)
 
-    # ------------------------------------------------------------------ other robots made from it
-
     def with_locked(self, joints: Mapping[str, float]) -> Robot:
         """The robot with some joints fixed at given angles (rad or m).
 
@@ -223,7 +221,7 @@ class Robot:
         carrier = self.model.frames[self.frame_id(parent)]
         model = self.model.copy()
         R = np.eye(3) if rotation is None else np.asarray(rotation, dtype=np.float64)
-        if R.shape != (3, 3) or np.abs(R @ R.T - np.eye(3)).max() > 1e-6 or np.linalg.det(R) < 0.0:
+        if not is_rotation(R):
             raise ConfigError(f"the rotation of frame {name!r} must be a rotation matrix (3, 3), got {R.tolist()}")
         placement = carrier.placement * pin.SE3(R, np.asarray(offset, dtype=np.float64))
         model.addFrame(pin.Frame(name, carrier.parentJoint, self.frame_id(parent), placement, pin.FrameType.OP_FRAME))

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pliant.environment import Environment, FeltSurface
 from pliant.errors import ConfigError
 from pliant.spatial import Array, as_vector
 
@@ -44,34 +45,6 @@ class Measurement:
     wrenches: Mapping[str, Array] = field(default_factory=_nothing)
     """frame → (6,) wrench of a force/torque sensor at that frame, in the frame's own axes, N and N·m. It holds
     everything the sensor feels, the tool's weight and inertia too."""
-
-
-@dataclass(frozen=True, slots=True)
-class Environment:
-    """How the environment is believed to give way along a contact's normal. Each `…_std` is a standard uncertainty."""
-
-    stiffness: float
-    """K, N/m"""
-    damping: float
-    """B, N·s/m"""
-    stiffness_std: float
-    """N/m"""
-    damping_std: float
-    """N·s/m; infinite where the motion does not tell"""
-
-
-@dataclass(frozen=True, slots=True)
-class FeltSurface:
-    """How a surface stands, as the path of the contact tells: the believed one, turned about a place and shifted."""
-
-    pivot: Array
-    """(3,) m, where the contact frame first touched"""
-    turn: Array
-    """(3,) rad, rotation vector in world axes that turns the believed surface about the pivot"""
-    normal: Array
-    """(3,) outward unit normal where the frame touches now"""
-    normal_std: float
-    """rad, standard uncertainty of the normal in its least certain direction"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -110,6 +110,11 @@ def rpy(roll: float, pitch: float, yaw: float) -> Array:
     return exp3([0.0, 0.0, yaw]) @ exp3([0.0, pitch, 0.0]) @ exp3([roll, 0.0, 0.0])
 
 
+def is_rotation(R: Array) -> bool:
+    """Whether a matrix is a rotation (3, 3) but for rounding, 1e-6."""
+    return R.shape == (3, 3) and bool(np.abs(R @ R.T - np.eye(3)).max() <= 1e-6 and np.linalg.det(R) > 0.0)
+
+
 def frame_with_z_along(direction: npt.ArrayLike) -> Array:
     """A rotation whose third column is `direction`: R_world_surface of a surface with that normal.
 

@@ -10,11 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pliant.environment import FeltSurface
 from pliant.errors import ConfigError
 from pliant.estimation import SurfaceEstimator, SurfaceFitConfig
 from pliant.guard.sound import is_estimate
 from pliant.robot import Robot
-from pliant.signals import Estimate, FeltSurface, Measurement
+from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
 from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 

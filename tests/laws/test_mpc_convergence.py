@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pliant.mpc.config import ClassicalMpc, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.config import MpcConfig
+from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, TorqueFeedbackMpc
 from tests.mpc.problems import polishing_arm, posed, start_state
 
 STARTS = 150

@@ -8,7 +8,8 @@ import time
 import numpy as np
 import pytest
 
-from pliant.live.page.replay import LoggedScene, ReplayPage
+from pliant.live.page.logged_scene import LoggedScene
+from pliant.live.page.replay import ReplayPage
 from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
 from tests.live.conftest import PATIENCE, Live, pixels, until

@@ -23,7 +23,8 @@ from pliant.cli.app import app
 from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
-from pliant.live.page.replay import LoggedScene, ReplayPage
+from pliant.live.page.logged_scene import LoggedScene
+from pliant.live.page.replay import ReplayPage
 from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
 

@@ -11,8 +11,9 @@ from pliant.mpc.config import Contact, MpcConfig
 from pliant.mpc.costs import Costs, Phase, Term
 from pliant.mpc.horizon import HorizonReference
 from pliant.mpc.kernel import kernel_model, kernel_solver
+from pliant.mpc.make_problem import problem_from_robot
 from pliant.mpc.nodes import NodeParameters
-from pliant.mpc.problem import MpcProblem, problem_from_robot
+from pliant.mpc.problem import MpcProblem
 from pliant.robot import Robot, Tool
 from pliant.spatial import Array
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from pliant.mpc import ForceFeedbackMpc
-from pliant.mpc.benchmark import BenchCase, NoisyLoop, run, statistics
+from pliant.mpc.benchmark import run, statistics
+from pliant.mpc.noisy_loop import BenchCase, NoisyLoop
 from pliant.robot import Robot, Tool
 
 

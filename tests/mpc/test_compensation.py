@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pliant.environment import Environment
 from pliant.errors import ConfigError, SignalError
 from pliant.experiments.config import merged
 from pliant.mpc import CONTROLLERS, Compensation, ForceFeedbackMpc, MpcController, OffsetFreeMpc
 from pliant.mpc.config import Bounds
-from pliant.signals import Environment, Estimate
+from pliant.signals import Estimate
 
 from .test_controller import ROBOT, _estimate, _reference
 

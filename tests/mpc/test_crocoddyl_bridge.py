@@ -11,9 +11,10 @@ import pinocchio as pin
 import pytest
 
 from pliant.errors import ConfigError, MissingExtraError
-from pliant.mpc.config import Bounds, ClassicalMpc, Contact, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.config import Bounds, Contact, MpcConfig
+from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, TorqueFeedbackMpc
+from pliant.mpc.make_problem import problem_from_model
 from pliant.mpc.nodes import copy_nodes
-from pliant.mpc.problem import problem_from_model
 from pliant.spatial import Array
 
 from .problems import config, polishing_arm, posed, random_posture, randomise, start_state

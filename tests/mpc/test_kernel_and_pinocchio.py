@@ -11,8 +11,8 @@ from pliant import _mpc
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.crocoddyl.node import PinocchioNode
 from pliant.mpc.kernel import kernel_model
+from pliant.mpc.make_problem import problem_from_robot
 from pliant.mpc.nodes import copy_nodes
-from pliant.mpc.problem import problem_from_robot
 from pliant.robot import Robot
 
 from .problems import AXES, KINDS, config, polishing_arm, random_state, randomise

@@ -10,8 +10,8 @@ import pytest
 
 from pliant import _mpc
 from pliant.experiments.config import merged
-from pliant.mpc.benchmark import BenchCase, NoisyLoop
-from pliant.mpc.config import ForceFeedbackMpc
+from pliant.mpc.defaults import ForceFeedbackMpc
+from pliant.mpc.noisy_loop import BenchCase, NoisyLoop
 from pliant.mpc.registry import CONTROLLERS
 from pliant.robot import Robot, Tool
 from tests.twins.mpc_robots import catalogue_chain, random_chain

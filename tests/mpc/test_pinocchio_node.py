@@ -10,7 +10,8 @@ import pytest
 
 from pliant.errors import ConfigError
 from pliant.mpc.crocoddyl.node import PinocchioNode
-from pliant.mpc.problem import MpcProblem, problem_from_model, problem_from_robot
+from pliant.mpc.make_problem import problem_from_model, problem_from_robot
+from pliant.mpc.problem import MpcProblem
 from pliant.spatial import Array
 
 from .problems import AXES, KINDS, config, polishing_arm, random_state, randomise

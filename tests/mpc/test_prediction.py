@@ -12,8 +12,8 @@ from pliant.estimation import MomentumObserver, WrenchEstimator
 from pliant.interfaces import ReferenceSource
 from pliant.mpc import ClassicalMpc, Contact, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
 from pliant.mpc.chain import chain_from_robot
+from pliant.mpc.make_problem import problem_from_robot
 from pliant.mpc.prediction import DelayPrediction
-from pliant.mpc.problem import problem_from_robot
 from pliant.robot import Robot, Tool
 from pliant.signals import Estimate, Reference, TaskReference, Tick
 from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Scene, Surface, table

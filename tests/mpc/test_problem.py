@@ -15,10 +15,11 @@ from pydantic import ValidationError
 from pliant import _mpc
 from pliant.errors import ConfigError, RobotError, ShapeError
 from pliant.mpc.chain import chain_from_robot
-from pliant.mpc.config import ClassicalMpc, Contact, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
+from pliant.mpc.config import Contact, MpcConfig
 from pliant.mpc.controller import MpcController
 from pliant.mpc.costs import Costs, Phase, Term
-from pliant.mpc.problem import problem_from_model, problem_from_robot
+from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, TorqueFeedbackMpc
+from pliant.mpc.make_problem import problem_from_model, problem_from_robot
 from pliant.mpc.registry import CONTROLLERS
 from pliant.robot import Robot, Tool
 from pliant.robots import CATALOGUE, is_available

@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pliant.environment import FeltSurface
 from pliant.errors import ConfigError
 from pliant.references.felt_surface import OnFeltSurface, turned
-from pliant.signals import Estimate, FeltSurface, Preview, Reference, TaskReference
+from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array, exp3
 from pliant.surfaces import PlaneSurface, SphereSurface, SurfaceGeometry
 

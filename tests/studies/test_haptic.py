@@ -11,7 +11,8 @@ from pliant.experiments.base import Result
 from pliant.experiments.config import merged
 from pliant.experiments.runner import run_case
 from pliant.studies.haptic import STUDY
-from pliant.studies.haptic.config import Check, HapticConfig, OnlineChanges, Planner, Step
+from pliant.studies.haptic.config import Check, HapticConfig
+from pliant.studies.haptic.steps_config import OnlineChanges, Planner, Step
 
 pytestmark = pytest.mark.study
 

@@ -13,10 +13,11 @@ from pliant.errors import ConfigError
 from pliant.experiments.config import merged
 from pliant.spatial import Array
 from pliant.studies.haptic import STUDY
-from pliant.studies.haptic.config import HapticConfig, Step
+from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import reachable_force
 from pliant.studies.haptic.script import wishes
+from pliant.studies.haptic.steps_config import Step
 from pliant.telemetry.recorder import Recorder
 from tests.laws.impedance_strategies import profile_of
 

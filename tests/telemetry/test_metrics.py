@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from pliant.errors import ShapeError
-from pliant.telemetry import metrics
+from pliant.telemetry import contact_metrics, metrics
 
 T_S = 1e-3  # s
 finite = st.floats(-1e3, 1e3).map(lambda x: round(x, 9))  # squares of tinier numbers would vanish
@@ -72,10 +72,10 @@ def test_storage_margin_tells_a_passive_port_from_an_active_one() -> None:
 
 def test_breaks_are_counted_and_timed() -> None:
     force = np.array([0.0, 0.0, 5.0, 5.0, 0.0, 5.0, 1e-3, 1e-3, 5.0, 5.0])
-    assert metrics.contact_breaks(force) == 2
-    assert metrics.break_share(force) == pytest.approx(0.5)
-    assert metrics.contact_breaks(np.full(5, 3.0)) == 0
-    assert metrics.contact_breaks(-force) == 0  # a pull is no contact
+    assert contact_metrics.contact_breaks(force) == 2
+    assert contact_metrics.break_share(force) == pytest.approx(0.5)
+    assert contact_metrics.contact_breaks(np.full(5, 3.0)) == 0
+    assert contact_metrics.contact_breaks(-force) == 0  # a pull is no contact
 
 
 def first_order(constant: float, end: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
@@ -88,23 +88,23 @@ def first_order(constant: float, end: float = 2.0) -> tuple[np.ndarray, np.ndarr
 def test_settling_time_of_a_first_order_lag(constant: float, band: float) -> None:
     time, value = first_order(constant, end=3.0)
     expected = constant * math.log(1.0 / band)
-    assert metrics.settling_time(time, value, 80.0, 40.0, 1.0, band) == pytest.approx(expected, abs=1.01 * T_S)
+    assert contact_metrics.settling_time(time, value, 80.0, 40.0, 1.0, band) == pytest.approx(expected, abs=1.01 * T_S)
 
 
 def test_settling_counts_the_last_exit_and_admits_never() -> None:
     time, value = first_order(0.05)
     late = value.copy()
     late[2000] = 85.0  # out of the band once more, 1 s after the command
-    assert metrics.settling_time(time, late, 80.0, 40.0, 1.0) == pytest.approx(1.001)
-    assert metrics.settling_time(time, value + 3.0, 80.0, 40.0, 1.0) == math.inf
-    assert metrics.settling_time(time, np.where(time > 1.5, np.nan, value), 80.0, 40.0, 1.0) == math.inf
-    assert metrics.settling_time(time, np.full_like(time, 80.0), 80.0, 40.0, 1.0) == 0.0
+    assert contact_metrics.settling_time(time, late, 80.0, 40.0, 1.0) == pytest.approx(1.001)
+    assert contact_metrics.settling_time(time, value + 3.0, 80.0, 40.0, 1.0) == math.inf
+    assert contact_metrics.settling_time(time, np.where(time > 1.5, np.nan, value), 80.0, 40.0, 1.0) == math.inf
+    assert contact_metrics.settling_time(time, np.full_like(time, 80.0), 80.0, 40.0, 1.0) == 0.0
 
 
 def test_overshoot_has_the_direction_of_the_step() -> None:
-    assert metrics.overshoot(np.array([40.0, 90.0, 80.0]), 80.0, 40.0) == 10.0
-    assert metrics.overshoot(np.array([80.0, 15.0, 20.0]), 20.0, 80.0) == 5.0
-    assert metrics.overshoot(np.array([40.0, 79.0]), 80.0, 40.0) == 0.0
+    assert contact_metrics.overshoot(np.array([40.0, 90.0, 80.0]), 80.0, 40.0) == 10.0
+    assert contact_metrics.overshoot(np.array([80.0, 15.0, 20.0]), 20.0, 80.0) == 5.0
+    assert contact_metrics.overshoot(np.array([40.0, 79.0]), 80.0, 40.0) == 0.0
 
 
 @given(arrays(np.float64, st.integers(1, 80), elements=finite), st.sampled_from([1, 3, 21]))
@@ -139,9 +139,9 @@ NAN = np.array([1.0, np.nan, 2.0])
         metrics.peak(NAN),
         metrics.torque_variation(NAN, T_S),
         metrics.torque_step_fraction(NAN[:, None], np.ones(1)),
-        metrics.break_share(NAN),
-        metrics.contact_breaks(NAN),
-        metrics.overshoot(NAN, 1.0, 0.0),
+        contact_metrics.break_share(NAN),
+        contact_metrics.contact_breaks(NAN),
+        contact_metrics.overshoot(NAN, 1.0, 0.0),
         metrics.storage_margin(NAN, NAN),
     ],
 )

@@ -62,7 +62,7 @@ def read_module(module: ModuleType) -> dict[str, str]:
             continue
         found[name] = "class"
         for part, inner in vars(value).items():
-            if part == "__init__" and hasattr(inner, "__nb_signature__") or not part.startswith("_"):
+            if (part == "__init__" and hasattr(inner, "__nb_signature__")) or not part.startswith("_"):
                 found[f"{name}.{part}"] = _of_module(inner)
     return found
 
@@ -94,8 +94,7 @@ def _signature(function: ast.FunctionDef, defaults: Any, names: dict[str, str]) 
     if arguments.kwonlyargs:
         parts.append("*")
         parts += [
-            _parameter(a, d, defaults, names)
-            for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+            _parameter(a, d, defaults, names) for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
         ]
     return f"({', '.join(parts)}) -> {_kind(function.returns, names)}"
 

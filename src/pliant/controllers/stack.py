@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,11 +14,12 @@ from pliant.controllers.attractor import Law, PhaseSettings
 from pliant.controllers.energy_ledger import Channel, Diagnostics, channel_table, require_length
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.profiles import linear_range
+from pliant.controllers.stack_input import check_stack, joints_that_move, target_of
 from pliant.controllers.task import FrameTask
-from pliant.errors import ConfigError, ShapeError, SignalError, options
+from pliant.errors import ShapeError, SignalError
 from pliant.interfaces import Controller, Needs
 from pliant.robot import Robot
-from pliant.signals import Command, Estimate, ImpedanceTuning, Reference, TaskReference
+from pliant.signals import Command, Estimate, ImpedanceTuning, Reference
 from pliant.spatial import Array
 
 
@@ -89,7 +89,7 @@ class Stack(Controller[StackState]):
             ConfigError: no task, two tasks of one label, or a period that is not above zero.
             RobotError: a frame that the robot does not have.
         """
-        _check(tasks, period, joint_damping)
+        check_stack(tasks, period, joint_damping)
         self.robot = robot
         self.tasks = tuple(tasks)
         self.period = period
@@ -113,7 +113,7 @@ class Stack(Controller[StackState]):
                     task.shape.value,
                     self.phases.rate_floor,
                     self.phases.rate_floor_angular,
-                    _moves(robot, frame),
+                    joints_that_move(robot, frame),
                 )
                 for task, frame in zip(self.tasks, self._frames, strict=True)
             ],
@@ -187,7 +187,7 @@ class Stack(Controller[StackState]):
         desired: list[Any] = []
         tunings = last
         for i, task in enumerate(self.tasks):
-            target = _target(reference, i, task.frame)
+            target = target_of(reference, i, task.frame)
             desired += (target.position, target.rotation)
             tuning = target.tuning or task.tuning
             if tuning is not tunings[i]:
@@ -225,30 +225,3 @@ class Stack(Controller[StackState]):
         return (
             f"the reference of frame {self.tasks[code - 200].frame!r} must be finite, its position or rotation is not"
         )
-
-
-def _target(reference: Reference, place: int, frame: str) -> TaskReference:
-    tasks = reference.tasks
-    if place < len(tasks) and tasks[place].frame == frame:  # the usual case: same order
-        return tasks[place]
-    for task in tasks:
-        if task.frame == frame:
-            return task
-    raise ConfigError(f"the reference has no task for frame {frame!r}; {options([t.frame for t in tasks], frame)}")
-
-
-def _check(tasks: Sequence[FrameTask], period: float, joint_damping: float) -> None:
-    if not (math.isfinite(period) and period > 0.0):
-        raise ConfigError(f"the control period must be finite and above zero, got {period} s")
-    if not (math.isfinite(joint_damping) and joint_damping >= 0.0):
-        raise ConfigError(f"joint_damping must be finite and not negative, got {joint_damping}")
-    labels = [task.label for task in tasks]
-    if not tasks or len(set(labels)) != len(labels):
-        raise ConfigError(f"a stack needs one or more tasks with different labels, got {labels}")
-
-
-def _moves(robot: Robot, frame: int) -> list[bool]:
-    """Which joints (n) move a frame."""
-    joint = robot.model.frames[frame].parentJoint
-    above = {robot.model.joints[j].idx_v for j in robot.model.supports[joint] if j > 0}
-    return [j in above for j in range(robot.n)]

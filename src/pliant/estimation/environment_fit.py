@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pliant.configuration import Config
+from pliant.environment import Environment
 from pliant.estimation.filters import Butterworth, Memory
-from pliant.signals import Environment
 from pliant.spatial import Array
 
 

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from pliant.environment import FeltSurface
 from pliant.errors import ConfigError
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
-from pliant.signals import Estimate, FeltSurface, Measurement
+from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array, cross, skew
 from pliant.surfaces import SurfaceGeometry
 

@@ -11,8 +11,9 @@ import math
 
 import numpy as np
 
+from pliant.environment import Environment
 from pliant.guard.faults import Fault
-from pliant.signals import Environment, Estimate, Measurement, Preview, Reference
+from pliant.signals import Estimate, Measurement, Preview, Reference
 from pliant.spatial import Array
 
 _NOT_NUMBERS = (AttributeError, TypeError, ValueError)

@@ -11,12 +11,10 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from pliant.entries import ControllerConfig
-from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.costs import Costs, Phase
 
 Kind = Literal["force_feedback", "classical", "torque_feedback", "free", "naive_viscoelastic"]
 Axes = Literal["local", "world", "surface"]
-
-_PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
 
 
 class Contact(ControllerConfig):
@@ -200,112 +198,3 @@ class MpcConfig(ControllerConfig):
                 "contact.friction needs contact.integrator = 'euler', got 'exponential', which solves a contact that"
                 " does not slide"
             )
-
-
-def _phases(track: Term, contact: Term, circle: Term) -> dict[str, Phase]:
-    return {
-        "reach": Phase(translation=track),
-        "track": Phase(translation=track),
-        "contact": Phase(contact=True, translation=contact),
-        "ramp": Phase(contact=True, translation=contact),
-        "circle": Phase(contact=True, translation=circle),
-        "approach": Phase(translation=track),
-        "press": Phase(contact=True, translation=contact),
-        "follow": Phase(contact=True, translation=circle),
-        "leave": Phase(translation=track),
-    }
-
-
-def _translation(weight: float, activation: tuple[float, ...], per_node: float | None = None) -> Term:
-    return Term(weight=weight, activation=activation, per_node=per_node, terminal_times_dt=False)
-
-
-_ALL = (1.0, 1.0, 1.0)
-_POSTURE = Term(weight=0.02, activation=(20.0, 20.0, 20.0, 10.0, 10.0, 10.0))
-_JOINT_VELOCITY = Term(weight=0.02, activation=(2.0,))
-_VELOCITY = Term(weight=0.05, terminal=1.0)
-
-
-class ForceFeedbackMpc(MpcConfig):
-    """Force feedback, [FFMPC] section V-C: the measured contact force is part of the state."""
-
-    kind: Kind = "force_feedback"
-    costs: Costs = Costs(
-        posture=_POSTURE,
-        joint_velocity=_JOINT_VELOCITY,
-        torque=Term(weight=1e-4),
-        rotation=Term(weight=20.0),
-        velocity=_VELOCITY,
-        force=Term(weight=0.01, terminal=0.05),
-        force_rate=Term(weight=6e-7),
-    )
-    phases: dict[str, Phase] = _phases(
-        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
-    )
-
-
-class OffsetFreeMpc(ForceFeedbackMpc):
-    """Force feedback without offsets, for a robot whose readings are 1 ms and whose commands 5 ms late.
-
-    It starts from a stiff contact, with which it is stable on soft and stiff ones, and then takes the stiffness that is
-    estimated.
-    """
-
-    contact: Contact = Contact(stiffness=(3e4,), damping=(1e2,), integrator="exponential")
-    compensation: Compensation = Compensation(
-        disturbance=True,
-        sensing_delay=1e-3,
-        computation_delay=5e-3,
-        averaging=4e-3,
-        force_integral=20.0,
-        environment=True,
-    )
-    costs: Costs = Costs(
-        posture=Term(weight=0.002, activation=_POSTURE.activation),
-        joint_velocity=_JOINT_VELOCITY,
-        torque=Term(weight=1e-5),
-        rotation=Term(weight=20.0),
-        velocity=_VELOCITY,
-        force=Term(weight=0.03, terminal=0.15),
-        force_rate=Term(weight=6e-7),
-    )
-    phases: dict[str, Phase] = _phases(
-        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(1000.0, _PLANE)
-    )
-
-
-class ClassicalMpc(MpcConfig):
-    """Classical, [FFMPC] section III-C: rigid contact, the measured force is not used."""
-
-    kind: Kind = "classical"
-    contact: Contact = Contact(baumgarte=(0.0, 10.0))
-    costs: Costs = Costs(
-        posture=_POSTURE,
-        joint_velocity=_JOINT_VELOCITY,
-        torque=Term(weight=1e-4),
-        rotation=Term(weight=20.0),
-        velocity=_VELOCITY,
-        force=Term(weight=1000.0),
-    )
-    phases: dict[str, Phase] = _phases(
-        _translation(5.0, _ALL, per_node=2.0), _translation(2.0, _ALL), _translation(60.0, _PLANE)
-    )
-
-
-class TorqueFeedbackMpc(MpcConfig):
-    """Torque feedback, [FFMPC] section IV-C: rigid contact, the measured joint torque is part of the state."""
-
-    kind: Kind = "torque_feedback"
-    contact: Contact = Contact(baumgarte=(0.0, 10.0))
-    costs: Costs = Costs(
-        posture=Term(weight=0.02, activation=(10.0, 10.0, 40.0, 10.0, 10.0, 50.0)),
-        joint_velocity=_JOINT_VELOCITY,
-        torque=Term(weight=1e-4),
-        unfiltered_torque=Term(weight=1e-9),
-        rotation=Term(weight=10.0),
-        velocity=_VELOCITY,
-        force=Term(weight=1000.0),
-    )
-    phases: dict[str, Phase] = _phases(
-        _translation(12.0, _ALL, per_node=5.0), _translation(200.0, _PLANE), _translation(200.0, _PLANE)
-    )

@@ -3,58 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
-import pinocchio as pin
 
-from pliant import _mpc
 from pliant.errors import ConfigError, SignalError, options
 from pliant.interfaces import Controller, Lookahead, Needs
 from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
-from pliant.mpc.compensation import CompensationState, Compensator
+from pliant.mpc.compensation import Compensator
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.horizon import HorizonReference, along_horizon, require_pushing
 from pliant.mpc.kernel import kernel_model, kernel_solver
+from pliant.mpc.make_problem import problem_from_robot
 from pliant.mpc.needs import needs_of
-from pliant.mpc.plan import Plan, SafeTorque, plan_of, torque_from, usable
-from pliant.mpc.problem import MpcProblem, problem_from_robot
+from pliant.mpc.plan import SafeTorque, plan_of, torque_from, usable
+from pliant.mpc.problem import MpcProblem
+from pliant.mpc.state import MpcState
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array, all_finite, clamp
 
 _TICK = 1e-9  # s; smaller than any period, larger than the rounding of a clock
-
-
-@dataclass(slots=True)
-class MpcState:
-    """State of a predictive controller: the solver with its plan, and what the next step needs. Consumed by `step`."""
-
-    solver: _mpc.Solver
-    nodes: _mpc.Nodes
-    """views into the solver"""
-    data: pin.Data
-    posture: Array
-    """(n,) rad, where the controller started"""
-    q: Array
-    """(n,) last finite positions, rad"""
-    v: Array
-    """(n,) last finite velocities, rad/s"""
-    next_solve: float
-    """s"""
-    compensation: CompensationState
-    """torques under way and the shift of the force reference"""
-    disturbance: Array
-    """d̂ (n,), the last finite one, N·m; zero if it is not compensated"""
-    plan: Plan | None = None
-    phases: tuple[object, ...] = ()
-    """what the weights in the nodes were written for"""
-    touching: bool = False
-    """whether the first node was in contact"""
-    failures: int = 0
-    """solves in a row that left no usable solution"""
-    channels: dict[str, float | Array] = field(default_factory=dict[str, "float | Array"])
 
 
 class MpcController(Controller[MpcState]):

@@ -10,9 +10,10 @@ import pinocchio as pin
 
 from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError
-from pliant.mpc.config import ClassicalMpc, ForceFeedbackMpc, MpcConfig, OffsetFreeMpc, TorqueFeedbackMpc
+from pliant.mpc.config import MpcConfig
 from pliant.mpc.controller import MpcController
 from pliant.mpc.costs import Term
+from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, OffsetFreeMpc, TorqueFeedbackMpc
 from pliant.mpc.needs import needs_of, suggest_mpc
 from pliant.robot import Robot
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -64,3 +65,27 @@ def _carried(model: mujoco.MjModel, data: mujoco.MjData, sensor: ForceSensor, si
     force = -sensor.mass * acceleration
     moment = cross(center, force) - inertia @ turning - cross(omega, inertia @ omega)
     return np.concatenate([force, moment])
+
+
+def sensor_readings(
+    model: Any,
+    data: Any,
+    sensors: Sequence[ForceSensor],
+    sites: Mapping[str, int],
+    felt: Mapping[ForceSensor, Sequence[str]],
+    wrenches: Mapping[str, Array],
+) -> dict[str, Array]:
+    """Frame of each sensor → what it reads now.
+
+    Args:
+        model, data: of MuJoCo.
+        sensors: to be read.
+        sites: frame → its site.
+        felt: sensor → frames whose contacts it feels.
+        wrenches: frame → true contact wrench (6,).
+    """
+    readings: dict[str, Array] = {}
+    for sensor in sensors:
+        felt_here = [(sites[frame], wrenches[frame]) for frame in felt[sensor]]
+        readings[sensor.frame] = sensor_reading(model, data, sensor, sites[sensor.frame], felt_here)
+    return readings

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -18,7 +18,7 @@ from pliant.simulation.contact.mujoco_forces import contact_wrenches
 from pliant.simulation.contact.pairs import can_move, pairs_of
 from pliant.simulation.disturbances import Push
 from pliant.simulation.equilibrium import holding_torque
-from pliant.simulation.force_sensor import ForceSensor, sensor_reading
+from pliant.simulation.force_sensor import ForceSensor, sensor_readings
 from pliant.simulation.joint_effects import JointEffects
 from pliant.simulation.joint_stops import JointStops, limits_of
 from pliant.simulation.link_capsule import LinkCapsule
@@ -242,12 +242,5 @@ class MujocoPlant(Plant[World]):
             v=data.qvel[:n].copy(),
             torque=world.torque.copy(),
             torque_sent=world.torque,
-            wrenches=self._sensor_readings(world),
+            wrenches=sensor_readings(self.model, data, self.sensors, self._sites, self._felt, world.wrenches),
         )
-
-    def _sensor_readings(self, world: World) -> Mapping[str, Array]:
-        sites, readings = self._sites, dict[str, Array]()
-        for sensor in self.sensors:
-            felt = [(sites[frame], world.wrenches[frame]) for frame in self._felt[sensor]]
-            readings[sensor.frame] = sensor_reading(self.model, world.data, sensor, sites[sensor.frame], felt)
-        return readings

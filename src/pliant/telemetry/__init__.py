@@ -1,10 +1,10 @@
 """Logs, metrics, tables and figures of runs."""
 
+from pliant.telemetry.channels import Channel
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import Log, LogChannel
 from pliant.telemetry.output import output_folder
 from pliant.telemetry.recorder import Recorder
-from pliant.telemetry.schema import Channel
 from pliant.telemetry.summary import Case, Metric, Summary, over_runs
 
 __all__ = [

@@ -15,7 +15,6 @@ import numpy.typing as npt
 from pliant.errors import ShapeError
 from pliant.spatial import Array
 
-BREAK_FORCE = 1e-3  # N; [FFMPC] eq. 35 counts a sample at or below γ as a break of contact, its value is ours
 AUTHORS_WINDOW = 21  # samples of the moving average that the authors of [FFMPC] apply before they compute errors
 
 
@@ -41,13 +40,13 @@ def rmse(actual: Array, reference: Array) -> Array:
     Raises:
         ShapeError: the shapes differ or there is no sample.
     """
-    return np.sqrt(np.mean(_error(actual, reference) ** 2, axis=0))
+    return np.sqrt(np.mean(error_of(actual, reference) ** 2, axis=0))
 
 
 def rms_error(actual: Array, reference: Array) -> float:
     """Root mean square error over time and axes, in the unit of the arguments (n,) or (n, k). Raises ShapeError as
     `rmse`."""
-    return math.sqrt(float(np.mean(_error(actual, reference) ** 2)))
+    return math.sqrt(float(np.mean(error_of(actual, reference) ** 2)))
 
 
 def mae(actual: Array, reference: Array) -> float:
@@ -56,12 +55,12 @@ def mae(actual: Array, reference: Array) -> float:
     Of the world-z force it is E_λ, of the horizontal position (n, 2) E_P, of desired against measured torque (n, k)
     E_τ, as [FFMPC] defines them in section VI.
     """
-    return float(np.mean(np.abs(_error(actual, reference))))
+    return float(np.mean(np.abs(error_of(actual, reference))))
 
 
 def max_error(actual: Array, reference: Array) -> float:
     """Largest absolute error over time and axes, in the unit of the arguments. Raises ShapeError as `rmse`."""
-    return float(np.max(np.abs(_error(actual, reference))))
+    return float(np.max(np.abs(error_of(actual, reference))))
 
 
 def moving_average(values: Array, window: int = AUTHORS_WINDOW) -> Array:
@@ -78,7 +77,7 @@ def moving_average(values: Array, window: int = AUTHORS_WINDOW) -> Array:
     Raises:
         ShapeError: no sample, or the window is not odd and positive.
     """
-    values = _some(values)
+    values = some_values(values)
     if window < 1 or window % 2 == 0:
         raise ShapeError(f"the window of a centred moving average must be an odd number of samples, got {window}")
     n = values.shape[0]
@@ -115,7 +114,7 @@ def peak(values: Array) -> float:
     Raises:
         ShapeError: there is no sample.
     """
-    return float(np.max(np.abs(_some(values))))
+    return float(np.max(np.abs(some_values(values))))
 
 
 def torque_step_fraction(torque: Array, limits: Array) -> float:
@@ -167,106 +166,21 @@ def storage_margin(supplied: Array, stored: Array) -> float:
     Raises:
         ShapeError: the shapes differ or there is no sample.
     """
-    gained = _error(stored, np.full_like(_some(stored), stored[0]))
-    return float(np.min(_error(supplied, np.full_like(supplied, supplied[0])) - gained))
-
-
-# ---------------------------------------------------------------------- contact
-
-
-def break_share(force: Array, threshold: float = BREAK_FORCE) -> float:
-    """t_break: share of the samples in which the normal force is at or below a threshold ([FFMPC] eq. 35).
-
-    Args:
-        force: (n,) N, the reaction along the surface's normal, positive when pressed.
-        threshold: γ, N.
-
-    Returns:
-        A fraction: 0.33 is 33 %.
-
-    Raises:
-        ShapeError: there is no sample.
-    """
-    force = _some(force)
-    return float(np.mean(force <= threshold)) if np.isfinite(force).all() else math.nan
-
-
-def contact_breaks(force: Array, threshold: float = BREAK_FORCE) -> float:
-    """How often the contact is lost: falls of the normal force (n,) N from above a threshold to it or below.
-
-    Raises:
-        ShapeError: there is no sample.
-    """
-    force = _some(force)
-    if not np.isfinite(force).all():
-        return math.nan
-    touching = force > threshold
-    return float(np.count_nonzero(touching[:-1] & ~touching[1:]))
-
-
-# ---------------------------------------------------------------------- steps
-
-
-def settling_time(
-    time: Array, value: Array, target: float, start: float, command_time: float, band: float = 0.05
-) -> float:
-    """Time from the command of a step until the value is within a share of the step of its target, and stays there.
-
-    Args:
-        time: (n,) s, up to the next command.
-        value: (n,).
-        target: of the step, in the unit of the value.
-        start: what was asked for before the step.
-        command_time: s.
-        band: share of `|target − start|`.
-
-    Returns:
-        s; infinite if the last sample is outside, 0 if none is.
-
-    Raises:
-        ShapeError: the shapes differ, or there is no sample after the command.
-    """
-    after = between(time, command_time)
-    error = np.abs(_error(value, np.full_like(value, target))[after])
-    time = _some(time[after])
-    outside = np.flatnonzero(~(error <= band * abs(target - start)))  # NaN is outside
-    if not outside.size:
-        return 0.0
-    if outside[-1] == len(time) - 1:
-        return math.inf
-    return float(time[outside[-1] + 1]) - command_time
-
-
-def overshoot(value: Array, target: float, start: float) -> float:
-    """How far a step response passes its target: the largest excess in the direction of the step, at least 0.
-
-    Args:
-        value: (n,) from the command to the next one.
-        target: of the step.
-        start: what was asked for before it.
-
-    Returns:
-        In the unit of the value.
-
-    Raises:
-        ShapeError: there is no sample.
-    """
-    direction = math.copysign(1.0, target - start)
-    worst = float(np.max(direction * (_some(value) - target)))
-    return worst if math.isnan(worst) else max(0.0, worst)
+    gained = error_of(stored, np.full_like(some_values(stored), stored[0]))
+    return float(np.min(error_of(supplied, np.full_like(supplied, supplied[0])) - gained))
 
 
 # ---------------------------------------------------------------------- checks
 
 
-def _error(actual: Array, reference: Array) -> Array:
-    actual, reference = _some(actual), np.asarray(reference, dtype=np.float64)
+def error_of(actual: Array, reference: Array) -> Array:
+    actual, reference = some_values(actual), np.asarray(reference, dtype=np.float64)
     if actual.shape != reference.shape:
         raise ShapeError(f"a metric needs two arrays of one shape, got {actual.shape} and {reference.shape}")
     return actual - reference
 
 
-def _some(values: npt.ArrayLike) -> Array:
+def some_values(values: npt.ArrayLike) -> Array:
     array = np.asarray(values, dtype=np.float64)
     if array.ndim == 0 or array.shape[0] == 0:
         raise ShapeError("a metric needs at least one sample, got none: is the window outside the run?")
@@ -274,7 +188,7 @@ def _some(values: npt.ArrayLike) -> Array:
 
 
 def _steps(values: npt.ArrayLike) -> Array:
-    array = _some(values)
+    array = some_values(values)
     if array.shape[0] < 2:
         raise ShapeError("a rate of change needs at least two samples, got one")
     return np.diff(array, axis=0)

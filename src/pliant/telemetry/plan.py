@@ -10,9 +10,10 @@ import numpy as np
 
 from pliant.signals import Tick
 from pliant.spatial import Array
+from pliant.telemetry.channels import Channel, Group
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.mcap.topics import Topic, is_rotation, logged, quaternions, topics
-from pliant.telemetry.schema import Channel, Group, groups
+from pliant.telemetry.schema import groups
 
 
 @dataclass(frozen=True)

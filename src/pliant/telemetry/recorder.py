@@ -16,12 +16,14 @@ import numpy as np
 
 from pliant.errors import ConfigError, OutputError, ShapeError
 from pliant.signals import Tick
+from pliant.telemetry.channels import Channel
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import CLOCK, Log
 from pliant.telemetry.mcap.topics import PREFIX, units_of
 from pliant.telemetry.mcap.writer import McapFile
 from pliant.telemetry.plan import Block, Plan
-from pliant.telemetry.schema import Channel, signature
+from pliant.telemetry.schema import signature
+from pliant.telemetry.target import open_target, whole_seconds_below
 from pliant.telemetry.timing import Timing
 
 _BLOCK = 512  # ticks per block: what a killed process loses at most, and one chunk of the file
@@ -61,7 +63,7 @@ class Recorder:
         self.info = info or RunInfo()
         metadata = {**self.info.as_metadata(), "decimation": str(decimation)}
         self.path = Path(target) if isinstance(target, (str, Path)) else None
-        self._stream, self._owned = _open(target)
+        self._stream, self._owned = open_target(target)
         self._channels, self._decimation = tuple(channels), decimation
         self._plans: dict[tuple[Any, ...], Plan] = {}
         self._signature: tuple[Any, ...] | None = None
@@ -215,7 +217,7 @@ class Recorder:
     def _write(self, block: Block) -> None:
         times = np.rint(block.times[: block.count] * 1e9).astype(np.int64)
         if self._zero is None:
-            self._zero = _whole_seconds_below(int(times.min()))
+            self._zero = whole_seconds_below(int(times.min()))
             if self._zero:
                 self._file.add_metadata(CLOCK, {"zero_ns": str(self._zero)})
         times = np.maximum(times + self._zero, 0)
@@ -237,19 +239,3 @@ class Recorder:
         failure = OutputError(f"{where} cannot be written: {why}")
         failure.__cause__ = error
         return failure
-
-
-def _whole_seconds_below(first: int) -> int:
-    """ns by which a clock that begins at `first` ns, below zero, is moved up; one second more than it needs."""
-    return 0 if first >= 0 else (-first // 1_000_000_000 + 2) * 1_000_000_000
-
-
-def _open(target: Path | str | BinaryIO | None) -> tuple[BinaryIO, bool]:
-    if target is None:
-        return io.BytesIO(), False
-    if not isinstance(target, (str, Path)):
-        return target, False
-    try:
-        return Path(target).open("wb"), True
-    except OSError as error:
-        raise OutputError(f"the log {target} cannot be created: {error.strerror}") from error

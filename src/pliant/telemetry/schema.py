@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from operator import attrgetter, itemgetter
 from typing import Any
@@ -18,6 +17,7 @@ import numpy as np
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.signals import TaskReference, Tick
+from pliant.telemetry.channels import Channel, Group, Groups
 from pliant.telemetry.info import RunInfo
 
 SIGNALS = ("measurement", "estimate", "reference", "command", "truth")
@@ -33,25 +33,6 @@ _TUNING_UNITS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Channel:
-    """One quantity of a log. In a table of units the name may be a pattern (`*/energy_*`) and the shape is not looked
-    at."""
-
-    name: str
-    unit: str = ""
-    """SI; where linear and angular parts share a vector: both, with a comma. Empty: not registered"""
-    shape: tuple[int, ...] = ()
-    """of one sample; () for a scalar"""
-    labels: tuple[str, ...] = ()
-    """names of the entries of a vector"""
-
-    @property
-    def size(self) -> int:
-        """Numbers per sample."""
-        return math.prod(self.shape)
-
-
 DIAGNOSTICS = (
     Channel("*energy", "J"),
     Channel("*energy_*", "J"),
@@ -61,14 +42,6 @@ DIAGNOSTICS = (
     Channel("*torque", _TORQUE),
 )
 """Units of diagnostics by custom; a recorder's own table goes first."""
-
-
-@dataclass(frozen=True, slots=True)
-class Group:
-    """Channels that are picked out of a tick in one call."""
-
-    pick: Callable[[Tick], Sequence[Any]]
-    channels: tuple[Channel, ...]
 
 
 def signature(tick: Tick) -> tuple[Any, ...]:
@@ -98,17 +71,6 @@ def signature(tick: Tick) -> tuple[Any, ...]:
 def _task_signature(task: TaskReference) -> tuple[Any, ...]:
     tuning = task.tuning
     return task.frame, task.rotation is None, tuning is None, tuning is None or tuning.linear_range is None
-
-
-@dataclass(frozen=True, slots=True)
-class Groups:
-    """All channels of ticks of one structure."""
-
-    signals: tuple[Group, ...]
-    """arrays of the signals: float64 by their types"""
-    arrays: tuple[Group, ...]
-    """array diagnostics: of any numeric type"""
-    scalars: tuple[Group, ...]
 
 
 def groups(tick: Tick, info: RunInfo, units: Sequence[Channel] = ()) -> Groups:

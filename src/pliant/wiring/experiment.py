@@ -8,7 +8,7 @@ from typing import Any
 from pliant.entries import ControllerConfig
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
 from pliant.robot import Robot
-from pliant.telemetry.schema import Channel
+from pliant.telemetry.channels import Channel
 
 
 @dataclass(frozen=True)

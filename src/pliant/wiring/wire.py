@@ -12,7 +12,7 @@ from pliant.controllers.step_limit import DEFAULT_SHARE, StepLimit
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.interfaces import Controller, Lookahead, Plant, ReferenceSource
 from pliant.robot import Robot
-from pliant.telemetry.schema import Channel
+from pliant.telemetry.channels import Channel
 from pliant.wiring.estimators import Sensing, estimator_for
 from pliant.wiring.experiment import Experiment
 

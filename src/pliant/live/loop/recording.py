@@ -7,9 +7,9 @@ from pathlib import Path
 
 from pliant.errors import OutputError, PliantError
 from pliant.signals import Tick
+from pliant.telemetry.channels import Channel
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.recorder import Recorder
-from pliant.telemetry.schema import Channel
 
 
 class SwitchedRecorder:

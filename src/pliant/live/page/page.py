@@ -7,7 +7,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import viser
 
 from pliant.experiments.base import CaseConfig
@@ -32,6 +31,7 @@ from pliant.live.page.fields import group_of, nested
 from pliant.live.page.form import Form
 from pliant.live.page.plots import Plots
 from pliant.live.page.pushes import PushControls
+from pliant.live.page.ready import has_desired_force, task_frames
 from pliant.live.page.run_controls import RunControls
 from pliant.live.page.scene_view import SceneView
 from pliant.live.page.target import TargetControls
@@ -122,7 +122,7 @@ class Page:
             case Picture() if self._ready is not None and message.run == self._ready.run:
                 self._draw(message)
             case Samples():
-                self._presses = self._presses or _has_desired_force(message, self._ready)
+                self._presses = self._presses or has_desired_force(message, self._ready)
                 self.plots.extend(message.run, message.rows)
             case Pulse():
                 self.run.beat(message)
@@ -140,7 +140,7 @@ class Page:
         self.run.begin(ready)
         self.plots.begin(ready.columns, ready.period)
         self.view.stage(ready.looks, ready.bodies, ready.scene)
-        task = next((name for name in ready.frames if name in _task_frames(ready)), ready.frames[-1])
+        task = next((name for name in ready.frames if name in task_frames(ready)), ready.frames[-1])
         self.pushes.offer(ready.frames, task)
         if shown != self._shown:
             self._shown, self._presses, self._framed = shown, False, False
@@ -243,16 +243,3 @@ class Page:
     def _change_case(self, place: Place, value: Any) -> None:
         if self._wanted is not None:
             self._wanted = merged(self._wanted, nested(place, value))
-
-
-def _task_frames(ready: Ready) -> list[str]:
-    find = getattr(ready.config, "frames", None)
-    found: Any = find() if callable(find) else ("tool",)
-    return [str(frame) for frame in found]
-
-
-def _has_desired_force(samples: Samples, ready: Ready | None) -> bool:
-    if ready is None or "desired.x" not in ready.columns or not len(samples.rows):
-        return False
-    first = ready.columns.index("desired.x")
-    return bool(np.nanmax(np.abs(samples.rows[:, first : first + 3]), initial=0.0) > 0.0)

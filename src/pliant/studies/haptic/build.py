@@ -24,7 +24,7 @@ from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import warnings_of
 from pliant.studies.haptic.scene import scene_of
 from pliant.studies.haptic.script import schedule
-from pliant.telemetry.schema import Channel
+from pliant.telemetry.channels import Channel
 from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired

@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.studies.haptic.config import (
-    BallConfig,
-    Check,
-    Environment,
-    Floor,
-    HapticConfig,
-    Hardware,
-    Impedance,
-    Material,
-    Planner,
-    Step,
-)
+from pliant.studies.haptic.config import Check, HapticConfig
 from pliant.studies.haptic.rows import plain
+from pliant.studies.haptic.scene_config import BallConfig, Environment, Floor, Hardware, Material
+from pliant.studies.haptic.steps_config import Impedance, Planner, Step
 
 _X = 0.12  # m, of the ball
 _Z = 0.21  # m: 10 mm below the foot's height when it touches the top

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from pliant.studies.haptic.config import BoxConfig, Check, Environment, Floor, HapticConfig, Material, Step
+from pliant.studies.haptic.config import Check, HapticConfig
 from pliant.studies.haptic.rows import plain
+from pliant.studies.haptic.scene_config import BoxConfig, Environment, Floor, Material
+from pliant.studies.haptic.steps_config import Step
 
 _ROUGH = Floor(material=Material())
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from pliant.studies.haptic.config import Check, HapticConfig, Hardware, Step
+from pliant.studies.haptic.config import Check, HapticConfig
 from pliant.studies.haptic.rows import plain
+from pliant.studies.haptic.scene_config import Hardware
+from pliant.studies.haptic.steps_config import Step
 
 _Z = 0.017  # m: the target lies 3 mm below the surface
 _STEPS = (

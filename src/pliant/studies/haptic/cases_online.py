@@ -4,20 +4,12 @@ from __future__ import annotations
 
 from pliant.experiments.case import Case, Row
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.studies.haptic.config import (
-    Check,
-    Environment,
-    Floor,
-    HapticConfig,
-    Impedance,
-    Material,
-    OnlineChanges,
-    Planner,
-    Step,
-)
+from pliant.studies.haptic.config import Check, HapticConfig
 from pliant.studies.haptic.delays import delay_figure, delay_rows
 from pliant.studies.haptic.parameters import parameter_figure, parameter_rows
 from pliant.studies.haptic.rows import drawn, plain
+from pliant.studies.haptic.scene_config import Environment, Floor, Material
+from pliant.studies.haptic.steps_config import Impedance, OnlineChanges, Planner, Step
 
 _ROUGH = Environment(floor=Floor(material=Material()))
 

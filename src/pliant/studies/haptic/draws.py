@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from pliant.studies.haptic.config import Environment, Floor, HapticConfig, Hardware, Material, OnlineChanges, Step
+from pliant.studies.haptic.config import HapticConfig
 from pliant.studies.haptic.safety import profile_along, reachable_force
 from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
+from pliant.studies.haptic.scene_config import Environment, Floor, Hardware, Material
+from pliant.studies.haptic.steps_config import OnlineChanges, Step
 
 _DEPTH = 0.003  # m of the target below where the foot touches
 

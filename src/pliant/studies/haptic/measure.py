@@ -13,7 +13,7 @@ from pliant.errors import ConfigError
 from pliant.spatial import Array
 from pliant.studies.haptic.config import JUDGED, TASK, Check, HapticConfig
 from pliant.studies.haptic.scene import BOX
-from pliant.telemetry import metrics
+from pliant.telemetry import contact_metrics, metrics
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -106,11 +106,11 @@ def _max(check: Check, signals: Signals, window: Window) -> float:
 def _settle(check: Check, signals: Signals, window: Window) -> float:
     time, force = signals.time[window], signals.force[window, check.axis]
     before = float(force[0]) if check.before is None else check.before
-    return metrics.settling_time(time, force, _wanted(check), before, check.begin)
+    return contact_metrics.settling_time(time, force, _wanted(check), before, check.begin)
 
 
 def _breaks(check: Check, signals: Signals, window: Window) -> float:
-    return metrics.contact_breaks(np.copysign(1.0, _wanted(check)) * signals.force[window, check.axis])
+    return contact_metrics.contact_breaks(np.copysign(1.0, _wanted(check)) * signals.force[window, check.axis])
 
 
 def _peak(check: Check, signals: Signals, window: Window) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from pliant.experiments.case import Case, Row
 from pliant.experiments.config import parse_assignments
 from pliant.experiments.result import Result
-from pliant.studies.haptic.config import Material
+from pliant.studies.haptic.scene_config import Material
 from pliant.telemetry.plots import style
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import numpy as np
 from pliant.simulation import Ball, Box, Plane, Scene, Surface
 from pliant.simulation.scene import Thing
 from pliant.spatial import rpy
-from pliant.studies.haptic.config import Environment, Floor, Material
+from pliant.studies.haptic.scene_config import Environment, Floor, Material
 
 FOOT_RADIUS = 0.02  # m, of the catalogue's leg
 FLOOR, BOX, BALL = "floor", "box", "ball"

@@ -9,7 +9,8 @@ import numpy as np
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.schedule import Schedule
 from pliant.signals import ImpedanceTuning, Reference, TaskReference
-from pliant.studies.haptic.config import HapticConfig, Step
+from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.steps_config import Step
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,9 @@ from pliant.simulation import ForceSensor, ImperfectPlant, MujocoPlant, Push, Sc
 from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
-from pliant.studies.polishing.config import FRAME, PolishingConfig, Pushes
+from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.studies.polishing.source import TURNED_DOWN, polishing_source, touching_point
+from pliant.studies.polishing.work_config import Pushes
 from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired

@@ -8,7 +8,7 @@ from typing import Any
 
 from pliant.configuration import overlaid
 from pliant.experiments.case import Case, Changes, Row
-from pliant.mpc.config import OffsetFreeMpc
+from pliant.mpc.defaults import OffsetFreeMpc
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.rows import BEST, DELAY, ROWS, STOCK, SWEPT, WITHOUT_LOOP, case_config, imperfect, varied

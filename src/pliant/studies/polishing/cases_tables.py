@@ -8,7 +8,7 @@ from typing import Any
 
 from pliant.experiments.case import Case, Pair, PaperTable, Row, once, seeded
 from pliant.studies.polishing.compared import compared
-from pliant.studies.polishing.config import PolishingConfig, Pushes
+from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.rows import (
     ALL,
     BEST,
@@ -22,6 +22,7 @@ from pliant.studies.polishing.rows import (
     imperfect,
     tilted,
 )
+from pliant.studies.polishing.work_config import Pushes
 
 _HEADINGS = {
     "E_P": "E_P, mm",

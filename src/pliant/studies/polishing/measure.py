@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from pliant.spatial import Array
 from pliant.studies.polishing.config import FRAME, PolishingConfig
+from pliant.telemetry import contact_metrics
 from pliant.telemetry import metrics as of
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
@@ -39,7 +40,7 @@ def measure(config: PolishingConfig, log: Log) -> tuple[Metric, ...]:
         "E_τ": (torque, "N·m"),
         "λ_max": (of.peak(force[working, 2]), "N"),
         "λ_dev": (of.max_error(force[working, 2], wanted[working]), "N"),
-        "t_break": (100.0 * of.break_share(force[of.between(time, task.pressed), 2]), "%"),
+        "t_break": (100.0 * contact_metrics.break_share(force[of.between(time, task.pressed), 2]), "%"),
         "first contact peak": (_first_peak(config, time, force[:, 2]), "N"),
         "E_λ along the normal": (float(np.mean(np.abs(off_normal[working]))), "N"),
         "E_P in the table's plane": (of.mae(off_plane[working], zeros), "mm"),

@@ -12,6 +12,7 @@ from pliant.errors import ConfigError, options
 from pliant.spatial import Array
 from pliant.surfaces import SurfaceGeometry
 from pliant.telemetry import metrics as of
+from pliant.telemetry.contact_metrics import break_share
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -67,7 +68,7 @@ MEASURES: Mapping[str, Measure] = {
     "force_peak": Measure("N", "largest normal force of the run", lambda s: of.peak(s.force), True),
     "landing_peak": Measure("N", "largest normal force shortly after the first contact", _landing_peak, True),
     "contact_lost": Measure(
-        "%", "share of the path without contact", lambda s: 100.0 * of.break_share(s.force[s.following]), True
+        "%", "share of the path without contact", lambda s: 100.0 * break_share(s.force[s.following]), True
     ),
     "path_error": Measure(
         "mm", "mean distance from the path, in the true tangent plane",

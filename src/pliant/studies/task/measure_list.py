@@ -12,6 +12,7 @@ from pliant.studies.task.config import TaskCase
 from pliant.studies.task.listed import frame_of, stages_of, tracks_of
 from pliant.tasks.phase import Track
 from pliant.telemetry import metrics as of
+from pliant.telemetry.contact_metrics import contact_breaks
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -77,7 +78,7 @@ def _pressing(case: TaskCase, made: Listed, log: Log) -> dict[str, tuple[float, 
             felt, asked = force[inside] @ along, wanted[inside] @ along
             found[f"{stage.name}/force_rms"] = (of.rms_error(felt, asked), "N")
             found[f"{stage.name}/force_max"] = (of.max_error(felt, asked), "N")
-            found[f"{stage.name}/contact_breaks"] = (float(of.contact_breaks(felt)), "")
+            found[f"{stage.name}/contact_breaks"] = (float(contact_breaks(felt)), "")
         found[f"{stage.name}/position_max"] = (1e3 * float(off[inside].max()), "mm")
     found["force_peak"] = (of.peak(np.linalg.norm(force, axis=1)), "N")
     return found

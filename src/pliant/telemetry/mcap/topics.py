@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pliant.spatial import Array
+from pliant.telemetry.channels import Channel
 from pliant.telemetry.mcap.messages import Template, template
-from pliant.telemetry.schema import Channel
 
 PREFIX = "/pliant"
 FIELDS = "pliant_fields"

@@ -27,7 +27,6 @@ from mcap.records import (
     DataEnd,
     Footer,
     Header,
-    McapRecord,
     Metadata,
     MetadataIndex,
     Schema,
@@ -37,6 +36,7 @@ from mcap.records import (
 
 from pliant.spatial import Array
 from pliant.telemetry.mcap.messages import DEFINITIONS, encode
+from pliant.telemetry.mcap.packing import put_numbers, put_values, record_bytes
 from pliant.telemetry.mcap.topics import Topic
 
 _MAGIC = b"\x89MCAP0\r\n"
@@ -71,11 +71,11 @@ class McapFile:
         self._metadata: list[MetadataIndex] = []
         self._compressor = zstandard.ZstdCompressor(level=_ZSTD_LEVEL)
         self._write(_MAGIC)
-        self._write(_bytes(Header("ros2", _LIBRARY)))
+        self._write(record_bytes(Header("ros2", _LIBRARY)))
 
     def add_metadata(self, name: str, data: Mapping[str, str]) -> None:
         """Adds a metadata record."""
-        record = _bytes(Metadata(name, dict(data)))
+        record = record_bytes(Metadata(name, dict(data)))
         self._metadata.append(MetadataIndex(self._at, len(record), name))
         self._write(record)
 
@@ -110,7 +110,7 @@ class McapFile:
 
     def finish(self) -> None:
         """Writes the index. Without it the file is readable up to its last block."""
-        self._write(_bytes(DataEnd(self._crc)))  # a byte that changes later shows
+        self._write(record_bytes(DataEnd(self._crc)))  # a byte that changes later shows
         start = self._at
         summary, offsets = b"", b""
         for opcode, records in (
@@ -120,14 +120,14 @@ class McapFile:
             (Opcode.CHUNK_INDEX, self._chunks),
             (Opcode.METADATA_INDEX, self._metadata),
         ):
-            group = b"".join(_bytes(record) for record in records)
+            group = b"".join(record_bytes(record) for record in records)
             if group:
-                offsets += _bytes(SummaryOffset(opcode, start + len(summary), len(group)))
+                offsets += record_bytes(SummaryOffset(opcode, start + len(summary), len(group)))
             summary += group
         offset_start = start + len(summary)
         head = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offset_start)
         crc = zlib.crc32(head, zlib.crc32(summary + offsets))
-        self._write(summary + offsets + _bytes(Footer(start, offset_start, crc)) + _MAGIC)
+        self._write(summary + offsets + record_bytes(Footer(start, offset_start, crc)) + _MAGIC)
         self._stream.flush()
 
     # ------------------------------------------------------------------ parts
@@ -173,22 +173,22 @@ class McapFile:
         seconds, rest = np.divmod(times, 1_000_000_000)
         for topic, channel, start in zip(topics, ids, starts, strict=True):
             sequence = self._next(channel, n) + np.arange(n)
-            _put(rows, start + 11, sequence.astype("<u4"))
-            _put(rows, start + 15, times.astype("<u8"))
-            _put(rows, start + 23, times.astype("<u8"))
+            put_values(rows, start + 11, sequence.astype("<u4"))
+            put_values(rows, start + 15, times.astype("<u8"))
+            put_values(rows, start + 23, times.astype("<u8"))
             body = start + _MESSAGE.size
             if topic.template.stamp is not None:
-                _put(rows, body + topic.template.stamp, seconds.astype("<i4"))
-                _put(rows, body + topic.template.stamp + 4, rest.astype("<u4"))
+                put_values(rows, body + topic.template.stamp, seconds.astype("<i4"))
+                put_values(rows, body + topic.template.stamp + 4, rest.astype("<u4"))
             slot = 0
             for channel_, order in topic.parts:
                 values = columns[channel_.name].reshape(n, -1)[:, order]
-                slot += _put_numbers(rows, body, topic.template.offsets[slot : slot + len(order)], values)
+                slot += put_numbers(rows, body, topic.template.offsets[slot : slot + len(order)], values)
         return rows, starts
 
     def _add_chunk(self, data: bytes, index: Mapping[int, npt.NDArray[np.uint64]], first: int, last: int) -> None:
         packed = self._compressor.compress(data)
-        record = _bytes(Chunk("zstd", packed, last, first, zlib.crc32(data), len(data)))
+        record = record_bytes(Chunk("zstd", packed, last, first, zlib.crc32(data), len(data)))
         chunk_start = self._at
         self._write(record)
         offsets: dict[int, int] = {}
@@ -224,30 +224,3 @@ class McapFile:
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )
-
-
-def _bytes(record: McapRecord) -> bytes:
-    builder = RecordBuilder()
-    record.write(builder)
-    return bytes(builder.end())
-
-
-def _put(rows: npt.NDArray[np.uint8], at: int, values: npt.NDArray[np.generic]) -> None:
-    """Writes (n,) values of one type at a byte of each row."""
-    width = values.dtype.itemsize
-    rows[:, at : at + width] = np.ascontiguousarray(values).view(np.uint8).reshape(len(rows), width)
-
-
-def _put_numbers(rows: npt.NDArray[np.uint8], body: int, offsets: Sequence[int], values: Array) -> int:
-    """Writes (n, k) float64 values, neighbours in one go. Returns k."""
-    k = len(offsets)
-    if not k:
-        return 0
-    packed = np.ascontiguousarray(values, dtype="<f8")
-    if offsets[-1] - offsets[0] == 8 * (k - 1):  # offsets only grow: then they are neighbours
-        at = body + offsets[0]
-        rows[:, at : at + 8 * k] = packed.view(np.uint8).reshape(len(rows), 8 * k)
-    else:
-        for column, offset in enumerate(offsets):
-            _put(rows, body + offset, packed[:, column])
-    return k

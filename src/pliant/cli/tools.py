@@ -1,0 +1,121 @@
+"""Commands that look at something or begin it: `pliant log`, `bench`, `list`, `new`, `doctor`, `task`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pliant.cli import program
+from pliant.cli.guarded import guarded
+from pliant.cli.program import Out, RobotOption, Sets
+from pliant.errors import ConfigError
+
+
+@program.app.command()
+@guarded
+def log(
+    file: Annotated[Path, typer.Argument(metavar="FILE.mcap", help="A log that pliant wrote.")],
+    plot: Annotated[bool, typer.Option("--plot", help="Draws the log into PNG files.")] = False,
+    out: Out = None,
+) -> None:
+    """Says what is in a log: channels, units, rates, metrics."""
+    from pliant.cli.log import log_command
+
+    log_command(program.out, file, plot, out)
+
+
+@program.app.command()
+@guarded
+def bench(
+    what: Annotated[str, typer.Argument(metavar="[controllers]", help="What to time.")] = "controllers",
+    json_: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Writes the numbers as JSON.")] = None,
+) -> None:
+    """Times one step: median, p90, p99 and maximum of the CPU time, in microseconds."""
+    from pliant.cli.bench import bench_command
+
+    bench_command(program.out, what, json_)
+
+
+@program.app.command("list")
+@guarded
+def list_(
+    what: Annotated[
+        str | None, typer.Argument(metavar="[robots|controllers|studies|tasks]", help="What to list; nothing: all.")
+    ] = None,
+) -> None:
+    """Lists robots, controllers, studies and tasks."""
+    from pliant.cli.listing import list_command
+
+    list_command(program.out, what)
+
+
+@program.app.command()
+@guarded
+def new(
+    what: Annotated[str, typer.Argument(metavar="task|controller", help="What to begin.")],
+    name: Annotated[
+        str,
+        typer.Argument(metavar="PATTERN|NAME", help="A task's raster, spiral, circle, line, …; a Python class's name."),
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="The file (default: after its name).")
+    ] = None,
+    robot: Annotated[str, typer.Option(metavar="NAME|FILE", help="The robot of a task.")] = "iiwa14",
+) -> None:
+    """Writes a file to begin with: a contact task, or a controller of your own with a test of it."""
+    from pliant.cli.new import new_command
+    from pliant.cli.task import new_task_command
+
+    if what == "task":
+        new_task_command(program.out, name, out, robot)
+    else:
+        new_command(program.out, what, name, out)
+
+
+@program.app.command()
+@guarded
+def doctor(
+    robot: Annotated[
+        str | None, typer.Argument(metavar="[ROBOT|FILE]", help="A robot: what was understood of it.")
+    ] = None,
+    locked: Annotated[
+        list[str] | None,
+        typer.Option(metavar="JOINT=ANGLE", help="A joint of ROBOT that is fixed (rad or m); can be repeated."),
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option("--config", metavar="CONFIG.toml", help="A configuration to check for unsafe gains.")
+    ] = None,
+) -> None:
+    """Checks this installation; with ROBOT, what was understood of a robot file; with --config, a configuration."""
+    from pliant.cli.doctor import doctor_command
+    from pliant.cli.doctor_robot import print_robot
+
+    if robot is None and locked:
+        raise ConfigError("--locked is of a robot: pliant doctor ROBOT --locked JOINT=ANGLE")
+    if robot is not None:
+        print_robot(program.out, robot, locked or [])
+    if robot is None or config is not None:
+        doctor_command(program.out, config)
+
+
+@program.app.command()
+@guarded
+def task(
+    action: Annotated[str, typer.Argument(metavar="check|schema", help="What to do.")],
+    target: Annotated[str | None, typer.Argument(metavar="[TASK.toml|TASK]", help="The task to check.")] = None,
+    case: Annotated[str | None, typer.Option(help="Variant of the task.")] = None,
+    robot: RobotOption = None,
+    out: Out = None,
+    set_: Sets = None,
+) -> None:
+    """Says whether a robot can do a task (check), or what can stand in a task file (schema)."""
+    from pliant.cli.task import check_command, schema_command
+
+    if action == "schema" and target is None:
+        schema_command(program.out, out)
+    elif action == "check" and target is not None:
+        check_command(program.out, target, case, {"robot": robot}, set_ or [], out)
+    else:
+        raise ConfigError(f"write pliant task check TASK.toml, or pliant task schema, got {action!r} {target or ''}")

@@ -1,0 +1,131 @@
+"""A log as pictures of a scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pliant.errors import OutputError, PliantError, RobotError
+from pliant.experiments.config import validated
+from pliant.experiments.registry import get_study, study_names
+from pliant.live.link.messages import Picture
+from pliant.live.loop.steered_plant import physics_of
+from pliant.live.page.curves import Columns
+from pliant.live.page.visual_shapes import Poser, looks_of
+from pliant.mujoco_model import spec_from_robot
+from pliant.robot import Robot
+from pliant.simulation import Scene
+from pliant.spatial import Array
+from pliant.telemetry.log import Log
+
+_CURVE_SAMPLES = 0.02  # s between two points of a curve
+
+
+class LoggedScene:
+    """What a log shows at any time.
+
+    Args:
+        log: with torques, and true joint positions or measured ones.
+
+    Raises:
+        OutputError: the log holds no motion.
+        RobotError: the robot of the log is not here.
+    """
+
+    def __init__(self, log: Log) -> None:
+        if "command/torque" not in log or "measurement/q" not in log:
+            raise OutputError(
+                f"{log.source} holds no motion to replay: it has no channel 'measurement/q' or 'command/torque'"
+            )
+        self.log = log
+        self.model, robot, self.scene = _model(log)
+        self.robot = robot
+        self.looks = looks_of(self.model, robot.n)
+        self.columns, self.rows = Columns.of_log(log, robot.joint_names)
+        self._body, self._ghost = Poser(self.model, robot.n), Poser(self.model, robot.n)
+        self.time = log.time("measurement/q")
+        self._q = log["truth/q" if "truth/q" in log else "measurement/q"]
+        self._wrenches = {name.split("/")[1]: name for name in log.matching("/wrench") if name.startswith("truth/")}
+        self._objects = {name.split("/")[2]: name for name in log.channels if name.startswith("truth/objects/")}
+
+    def picture(self, at: float) -> Picture:
+        """The scene at a time in s."""
+        moment = float(self.time[min(int(np.searchsorted(self.time, at)), len(self.time) - 1)])
+        q = self._value("truth/q" if "truth/q" in self.log else "measurement/q", moment)
+        assert q is not None
+        objects = {
+            name: pose for name, channel in self._objects.items() if (pose := self._value(channel, moment)) is not None
+        }
+        positions, quaternions = self._body.bodies(q, objects)
+        posture = self._value("reference/posture", moment)
+        here = self._body.frame(self.columns.frame) if self.columns.frame else None
+        target = self._value(f"reference/{self.columns.frame}/position", moment)
+        return Picture(
+            run=0,
+            time=moment,
+            positions=positions,
+            quaternions=quaternions,
+            ghost=None if posture is None else self._ghost.bodies(posture, objects),
+            tool=positions[-1] if here is None else here,
+            target=target,
+            nominal=None,
+            contacts=self._contacts(moment),
+            asked=self._asked(moment),
+            predicted_path=self._rows("mpc/predicted_path", moment),
+            predicted_force=self._rows("mpc/predicted_force", moment),
+        )
+
+    def curves(self, at: float, window: float) -> Array:
+        """Samples (k, columns) of the last seconds before a time."""
+        time = self.rows[:, 0]
+        first, last = np.searchsorted(time, (at - window, at + 1e-9))
+        step = max(1, round(_CURVE_SAMPLES * len(time) / max(float(time[-1] - time[0]), 1e-3)))
+        return self.rows[int(first) : max(int(last), int(first) + 1) : step]
+
+    def _value(self, channel: str, at: float) -> Array | None:
+        """The sample of a channel that held at a time; None if it has none by then."""
+        if channel not in self.log:
+            return None
+        index = int(np.searchsorted(self.log.time(channel), at + 1e-9)) - 1
+        return self.log[channel][index] if index >= 0 else None
+
+    def _rows(self, channel: str, at: float) -> Array | None:
+        value = self._value(channel, at)
+        return value[:, :3] if value is not None and value.ndim == 2 and np.isfinite(value).all() else None
+
+    def _contacts(self, at: float) -> dict[str, tuple[Array, Array]]:
+        found: dict[str, tuple[Array, Array]] = {}
+        for frame, channel in self._wrenches.items():
+            place, wrench = self._body.frame(frame), self._value(channel, at)
+            if place is not None and wrench is not None:
+                found[frame] = place, wrench[:3]
+        return found
+
+    def _asked(self, at: float) -> Array:
+        for channel in (f"reference/{self.columns.frame}/wrench", self.columns.command_wrench):
+            value = self._value(channel, at) if channel else None
+            if value is not None and np.any(value[:3]):
+                return value[:3]
+        return np.zeros(3)
+
+
+def _model(log: Log) -> tuple[Any, Robot, Scene | None]:
+    """MuJoCo model, robot and scene of the run; without its study, the robot alone."""
+    info = log.info
+    if info.study in study_names():
+        study = get_study(info.study)
+        try:
+            built = study.build(validated(study.config_type, info.config))
+        except PliantError:
+            built = None  # a log of another version: its configuration is not today's
+        physics = None if built is None else physics_of(built.plant)
+        if built is not None and physics is not None:
+            return physics.model, built.robot, physics.scene
+    robot = Robot.load(info.robot)
+    if log["measurement/q"].shape[1] != robot.n:
+        joints = log["measurement/q"].shape[1]
+        raise RobotError(
+            f"{log.source} has {joints} joints, but robot {info.robot!r} has {robot.n}: it cannot be drawn"
+        )
+    return spec_from_robot(robot).compile(), robot, None
