@@ -189,7 +189,7 @@ def test_a_sensor_feels_what_touches_beyond_it_and_nothing_else(leg3: Robot) -> 
     scene = Scene((floor(0.0, Surface(1e4, 4e2, friction=0.0)),))
     plant = leg_plant(leg3, scene, sensors=sensors)
     world, wrench = press(plant, 20.0)
-    readings, truth = plant._sensor_readings(world), plant.truth(world)
+    readings, truth = plant._measure(world).wrenches, plant.truth(world)
     for frame in ("foot", "shank", "thigh"):
         R = truth.rotations[frame]
         np.testing.assert_allclose(R @ readings[frame][:3], wrench[:3], atol=1e-9)
