@@ -39,7 +39,16 @@ WORDS += (
     "stakc",
     "\x00",
 )
-PATHS = ("/dev/null", "/dev/zero", "/dev/full", "/proc/self/mem", "~no-such-user/x", "/root/x", "x" * 300, "a/" * 3000)
+PATHS = (
+    "/dev/null",
+    "/dev/zero",
+    "/dev/full",
+    "/proc/self/mem",
+    "~no-such-user/x",
+    "/proc/1/x",
+    "x" * 300,
+    "a/" * 3000,
+)
 _HOLD = ("--set", "path.kind=hold", "--set", "path.ramp=0", "--set", "duration=0.05")
 RUNS = (
     ("stack", "rest-plain", ("--set", "duration=0.05")),

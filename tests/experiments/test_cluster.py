@@ -7,13 +7,13 @@ import socket
 import struct
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
 
+from benchmarks.endings import server
 from pliant.errors import ConfigError, RunFailedError
 from pliant.experiments import cluster
 from pliant.experiments.pool import open_pool
@@ -31,31 +31,10 @@ GREETINGS = {
 }
 
 
-@contextmanager
-def _server(greeting: bytes) -> Iterator[str]:
-    with socket.create_server(("127.0.0.1", 0)) as door:
-        lines: list[socket.socket] = []
-
-        def serve() -> None:
-            try:
-                while True:
-                    line, _ = door.accept()
-                    lines.append(line)
-                    line.sendall(greeting)
-            except OSError:
-                return
-
-        threading.Thread(target=serve, daemon=True).start()
-        yield f"tcp://127.0.0.1:{door.getsockname()[1]}"
-        door.shutdown(socket.SHUT_RDWR)
-        for line in lines:
-            line.close()
-
-
 @pytest.mark.parametrize("kind", GREETINGS)
 def test_a_server_that_is_not_dask_is_one_sentence(kind: str) -> None:
     with (
-        _server(GREETINGS[kind]) as address,
+        server(GREETINGS[kind]) as address,
         pytest.raises(ConfigError, match="no dask scheduler answers at") as caught,
         open_pool(1, address),
     ):

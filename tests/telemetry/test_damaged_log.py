@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mcap.opcode import Opcode
 from rich.console import Console
 
 from pliant.errors import OutputError
@@ -67,7 +68,21 @@ def test_a_flipped_byte_is_refused_or_said(whole: bytes) -> None:
         else:
             outcomes["no matter"] += 1
             assert same(log, intact), f"byte {place} changed the log in silence"
-    assert outcomes["said"] > 300, outcomes  # a checksum covers all but the magic bytes
+    assert outcomes["said"] > 300, outcomes
+
+
+def test_each_byte_of_the_end_is_guarded(whole: bytes) -> None:
+    """The records that hold the checksums, and what comes after them."""
+    intact = Log.open(io.BytesIO(whole))
+    for place in range(len(whole) - 60, len(whole)):
+        data = bytearray(whole)
+        data[place] ^= 1 << place % 8
+        log = opened(bytes(data))
+        assert log is None or log.truncated or same(log, intact), f"byte {place} changed the log in silence"
+    end = whole.rindex(bytes([Opcode.DATA_END]) + (4).to_bytes(8, "little"))
+    for place in range(end, end + 13):
+        log = opened(whole[:place] + bytes([whole[place] ^ 16]) + whole[place + 1 :])
+        assert log is None or log.truncated, f"byte {place - end} of the record with the checksum"
 
 
 def test_a_cut_is_refused_or_said(whole: bytes) -> None:

@@ -106,7 +106,7 @@ def read(name: str, data: bytes) -> Contents:
     if not data.startswith(_MAGIC):
         what = "is empty" if not data else "is not an MCAP file (wrong first bytes)"
         raise OutputError(f"{name} {what}; a pliant log ends in .mcap")
-    found = Contents()
+    found, whole = Contents(), False
     with contextlib.suppress(Exception):  # whatever damaged bytes lead to: what was read until then counts
         for opcode, start, end in _records(data, len(_MAGIC)):
             if opcode == Opcode.CHUNK:
@@ -116,10 +116,11 @@ def read(name: str, data: bytes) -> Contents:
                 found.metadata[record.name] = record.metadata
             elif opcode == Opcode.DATA_END:
                 _check(DataEnd.read(_stream(data, start, end)).data_section_crc, data[: start - _RECORD.size])
+                whole = True
             elif opcode == Opcode.FOOTER:
                 footer = Footer.read(_stream(data, start, end))
                 _check(footer.summary_crc, data[footer.summary_start : end - 4])
-                found.complete = data[end:] == _MAGIC
+                found.complete = whole and data[end:] == _MAGIC
                 break
     return found
 
