@@ -20,9 +20,9 @@ import numpy as np
 from pliant.configuration import merged
 from pliant.errors import PliantError
 from pliant.experiments.runner import run_case
-from pliant.studies.task.check import checked_reach
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.study import TaskStudy, study_of
+from pliant.studies.task.study import study_of
+from pliant.studies.task.task_study import TaskStudy
 
 FARTHEST = 20.0  # mm
 PERFECT = {"sensing_delay": 0.0, "computation_delay": 0.0}
@@ -75,7 +75,7 @@ def main() -> int:
         case = merged(study.case("wipe"), drawn(seed))
         told = f"task {seed}, {case.robot}, {case.path.pattern} on a {case.surface.shape}"
         try:
-            reachable = checked_reach(case, 1).reachable
+            reachable = study.check(case, 1).reachable
         except PliantError as error:
             print(f"{told}: {error}", flush=True)
             continue

@@ -166,8 +166,8 @@ class Preview:
     """(N+1,) s"""
     position: Array
     """(N+1, 3) m"""
-    rotation: Array
-    """(N+1, 3, 3) R_world_frame"""
+    rotation: Array | None
+    """(N+1, 3, 3) R_world_frame; None leaves the orientation free"""
     velocity: Array
     """(N+1, 6) twist, m/s and rad/s"""
     wrench: Array

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from unittest.mock import patch
 
 import numpy as np
@@ -211,10 +212,11 @@ def test_a_true_surface_on_which_it_fails_makes_the_task_unreachable() -> None:
     believed = PlaneSurface(place, np.eye(3))
     course = course_on(believed, place, line((0.1, 0.0)))
     near, gone = believed.moved(shift=[0.0, 0.0, 0.004]), SphereSurface(place - [0.0, 0.0, 0.03], np.eye(3), 0.03)
-    good = check_reach(ROBOT, "tool", course, [near], RADIUS, posture=PLAIN)
+    true = [partial(course.on, surface, RADIUS) for surface in (near, gone)]
+    good = check_reach(ROBOT, "tool", course, true[:1], posture=PLAIN)
     assert good.reachable
     assert [found.label for found in good.surfaces] == ["believed", "drawn 1"]
-    bad = check_reach(ROBOT, "tool", course, [near, gone], RADIUS, posture=PLAIN)
+    bad = check_reach(ROBOT, "tool", course, true, posture=PLAIN)
     assert not bad.reachable
     assert "leaves the surface" in bad.surfaces[2].failure
     assert len(reach_figure(good, "task").axes) == 4

@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from pliant import loop
-from pliant.cli.app import app
 from pliant.configuration import merged
-from pliant.errors import ConfigError, PliantError
+from pliant.errors import ConfigError
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
 from pliant.robot import Robot
@@ -24,8 +22,6 @@ from pliant.studies.task.study import study_of
 from pliant.tasks import load_task
 from pliant.telemetry.log import Log
 from pliant.telemetry.recorder import Recorder
-
-CLI = CliRunner()
 
 
 def recorded(study: Any, case: Any, period: float) -> Log:
@@ -219,11 +215,3 @@ def test_things_stand_where_the_scene_says() -> None:
     floor, box = scene_of(study_of("push-box").case("push-box")).things
     assert (floor.name, floor.surface.friction, floor.surface.friction_moving) == ("floor", 0.5, 0.3)
     assert (box.name, box.surface.stiffness) == ("box", 1e6)
-
-
-def test_a_list_is_refused_by_commands_that_are_for_paths() -> None:
-    for words in (["task", "check", "figure8"], ["study", "figure8", "--tune", "stack", "--trials", "1"]):
-        found = CLI.invoke(app, words)
-        assert found.exit_code == 2, found.output
-    with pytest.raises(PliantError, match="cannot be tuned yet"):
-        study_of("figure8").tuning("stack")

@@ -89,7 +89,7 @@ def check_command(
     assignments: Sequence[str],
     out: Path | None,
 ) -> None:
-    """Whether a robot can do a task, on the believed surface and on ten drawn true ones: a table and a picture.
+    """Whether a robot can do a task, as it is believed and in ten drawn worlds: a table and a picture.
 
     Raises:
         PliantError: bad input.
@@ -97,16 +97,17 @@ def check_command(
     """
     from pliant.cli.run import resolve, study_folder
     from pliant.errors import RunFailedError
-    from pliant.studies.task.check import checked_reach
     from pliant.studies.task.config import TaskCase
     from pliant.studies.task.reach_figure import reach_figure
+    from pliant.studies.task.task_study import TaskStudy
     from pliant.telemetry.plots import save
 
-    config = resolve(target, case, overrides, assignments).config
-    if not isinstance(config, TaskCase):
+    asked = resolve(target, case, overrides, assignments)
+    study, config = asked.study, asked.config
+    if not isinstance(study, TaskStudy) or not isinstance(config, TaskCase):
         raise ConfigError(f"{target} is a study; `pliant task check` checks a task file")
-    found = checked_reach(config)
-    table = Table("surface", "what", "least or most", "bound", "where", "kept")
+    found = study.check(config)
+    table = Table("world", "what", "least or most", "bound", "where", "kept")
     for row in found.rows():
         if row[0] == found.surfaces[0].label or row[-1] != "✓":
             table.add_row(*row)
@@ -117,8 +118,12 @@ def check_command(
     _say(console, f"figure   {file}")
     if not found.reachable:
         failed = next(check for check in found.surfaces if not check.reachable)
-        raise RunFailedError(f"not possible on the {failed.label} surface: {failed.failure}; {found.help}")
-    _say(console, f"possible on the believed surface and on {len(found.surfaces) - 1} drawn ones")
+        raise RunFailedError(f"not possible as {failed.label}: {failed.failure}; {found.help}")
+    drawn = len(found.surfaces) - 1
+    _say(
+        console,
+        f"possible as believed and in {drawn} drawn worlds" if drawn else "possible; no seed draws another way",
+    )
 
 
 def _say(console: Console, text: str) -> None:

@@ -103,8 +103,11 @@ def is_torque(time: float, torque: Array, n: int) -> bool:
 
 def _is_preview(ahead: Preview, n: int) -> bool:
     N = len(ahead.time)
-    parts = [ahead.time, ahead.position, ahead.rotation, ahead.velocity, ahead.wrench]
-    shapes: list[tuple[int, ...]] = [(N,), (N, 3), (N, 3, 3), (N, 6), (N, 6)]
+    parts = [ahead.time, ahead.position, ahead.velocity, ahead.wrench]
+    shapes: list[tuple[int, ...]] = [(N,), (N, 3), (N, 6), (N, 6)]
+    if ahead.rotation is not None:
+        parts.append(ahead.rotation)
+        shapes.append((N, 3, 3))
     if ahead.posture is not None:
         parts.append(ahead.posture)
         shapes.append((N, n))

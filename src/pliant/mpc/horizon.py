@@ -83,7 +83,7 @@ def _sampled(preview: Preview, times: Array) -> HorizonReference:
 
     return HorizonReference(
         position=between(preview.position),
-        rotation=preview.rotation[at],
+        rotation=None if preview.rotation is None else preview.rotation[at],
         velocity=between(preview.velocity),
         wrench=between(preview.wrench),
         posture=None if preview.posture is None else between(preview.posture),

@@ -92,7 +92,7 @@ def _preview(ahead: Preview, R: Array, pivot: Array) -> Preview:
     return replace(
         ahead,
         position=pivot + (ahead.position - pivot) @ R.T,
-        rotation=R @ ahead.rotation,
+        rotation=None if ahead.rotation is None else R @ ahead.rotation,
         velocity=_twist(R, ahead.velocity),
         wrench=_twist(R, ahead.wrench),
         task_rotation=None if ahead.task_rotation is None else R @ ahead.task_rotation,

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.source import Started
 from pliant.signals import Estimate, Preview, Reference
+from pliant.spatial import Array
 
 
 class Timed(Protocol):
@@ -18,6 +19,14 @@ class Timed(Protocol):
 
     def at(self, time: float, elapsed: float) -> Reference:
         """The reference at `time` of the loop's clock, `elapsed` s after the start."""
+        ...
+
+
+class Coming(Protocol):
+    """A source that knows what it will say."""
+
+    def coming(self, state: Any, until: float) -> Sequence[Reference]:
+        """Its next references, each with the s from which it holds."""
         ...
 
 
@@ -38,24 +47,27 @@ class Foreseen(ReferenceSource[Started]):
     def step(self, estimate: Estimate, state: Started) -> tuple[Reference, Started]:
         elapsed, ahead = estimate.time - state.time, self.lookahead
         now = self.inner.at(estimate.time, elapsed)
-        delays = ahead.lead + ahead.step * np.arange(ahead.nodes + 1, dtype=np.float64)
-        later = [self.inner.at(estimate.time + delay, elapsed + delay) for delay in delays.tolist()]
-        return replace(now, preview=_preview(later)), state
+        delays = (instants(estimate.time, ahead) - estimate.time).tolist()
+        later = [self.inner.at(estimate.time + delay, elapsed + delay) for delay in delays]
+        return replace(now, preview=preview_of(later)), state
 
 
-def _preview(later: Sequence[Reference]) -> Preview | None:
-    """None where the first task leaves the orientation free: a preview has one at each node."""
+def instants(time: float, lookahead: Lookahead) -> Array:
+    """(N+1,) s of the loop's clock, of a preview that is made at `time`."""
+    return time + lookahead.lead + lookahead.step * np.arange(lookahead.nodes + 1, dtype=np.float64)
+
+
+def preview_of(later: Sequence[Reference]) -> Preview:
+    """The first task of later references, at least one, as a preview. Orientation is free where one leaves it free."""
     tasks = [reference.tasks[0] for reference in later]
     rotations = [task.rotation for task in tasks if task.rotation is not None]
-    if len(rotations) < len(tasks):
-        return None
     postures = [reference.posture for reference in later if reference.posture is not None]
     axes = [np.eye(3) if task.task_rotation is None else task.task_rotation for task in tasks]
     turning = any(task.task_rotation is not None for task in tasks)
     return Preview(
         time=np.array([reference.time for reference in later]),
         position=np.array([task.position for task in tasks]),
-        rotation=np.array(rotations),
+        rotation=np.array(rotations) if len(rotations) == len(tasks) else None,
         velocity=np.array([task.velocity for task in tasks]),
         wrench=np.array([task.wrench for task in tasks]),
         phase=tuple(reference.phase for reference in later),

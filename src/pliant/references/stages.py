@@ -35,6 +35,11 @@ class Ending:
     fails: bool = False
     """whether the run is a failure when this ends the stage"""
 
+    @property
+    def by_time(self) -> bool:
+        """Whether the clock alone decides."""
+        return self.contact is None and self.force is None and self.depth is None and self.reached is None
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -123,8 +128,37 @@ class Stages(ReferenceSource[StageState]):
     def step(self, estimate: Estimate, state: StageState) -> tuple[Reference, StageState]:
         """Raises RunFailedError where a timeout that is a failure ends a stage."""
         state = self._changed(self._advanced(estimate, state), estimate.time)
-        name = self.stages[state.stage].name
-        return Reference(estimate.time, (state.task,), phase=name, tuning=state.whole), state
+        return self._said(estimate.time, state), state
+
+    def coming(self, state: StageState, until: float) -> list[Reference]:
+        """What will be said other than now up to a time in s, as far as it is known: a stage that ends by what is felt
+        goes on. Each reference has the time from which it holds."""
+        found: list[Reference] = []
+        while True:
+            stage, change = self._ends(state), self._next_change(state)
+            time = min(stage, change)
+            if time > until:
+                return found
+            # a change at the end of a stage is one of the stage that begins
+            state = self._next(state, time, state.place) if stage <= change + _ROUNDING else self._changed(state, time)
+            found.append(self._said(time, state))
+
+    def _said(self, time: float, state: StageState) -> Reference:
+        return Reference(time, (state.task,), phase=self.stages[state.stage].name, tuning=state.whole)
+
+    def _ends(self, state: StageState) -> float:
+        """s at which the clock alone ends the stage; infinite where it does not."""
+        if state.stage + 1 == len(self.stages):
+            return np.inf
+        sure = [one.duration for one in self.stages[state.stage].endings if one.by_time and not one.fails]
+        return state.begin + min(sure, default=np.inf)
+
+    def _next_change(self, state: StageState) -> float:
+        return state.start + self.changes[state.done].time if state.done < len(self.changes) else np.inf
+
+    def _next(self, state: StageState, time: float, place: Array) -> StageState:
+        task = replace(self.stages[state.stage + 1].task, tuning=state.task.tuning)
+        return state._replace(stage=state.stage + 1, begin=time, place=place, task=task)
 
     def _advanced(self, estimate: Estimate, state: StageState) -> StageState:
         ending = next((one for one in self.stages[state.stage].endings if self._holds(one, estimate, state)), None)
@@ -136,8 +170,7 @@ class Stages(ReferenceSource[StageState]):
             )
         if state.stage + 1 == len(self.stages):
             return state
-        task = replace(self.stages[state.stage + 1].task, tuning=state.task.tuning)
-        return state._replace(stage=state.stage + 1, begin=estimate.time, place=self._place(estimate), task=task)
+        return self._next(state, estimate.time, self._place(estimate))
 
     def _holds(self, ending: Ending, estimate: Estimate, state: StageState) -> bool:
         if estimate.time - state.begin < ending.duration - _ROUNDING:

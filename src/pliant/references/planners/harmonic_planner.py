@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,8 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pliant.errors import SignalError
-from pliant.interfaces import ReferenceSource
+from pliant.errors import ConfigError, SignalError
+from pliant.interfaces import Lookahead, ReferenceSource
+from pliant.references.foreseen import Coming, instants, preview_of
 from pliant.references.planners.superposition import MotionLimits, Plan
 from pliant.references.planners.workspace import Workspace
 from pliant.references.trajectories.trajectory import vector
@@ -18,6 +20,7 @@ from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import Array, exp3, log3, skew
 
 _STEADY = 0.02  # s: a target that moves all the time is looked at fifty times a second
+_ROUNDING = 1e-9  # s; times are sums of periods
 _ANGULAR_STEP = 1e-4  # s, for the difference that gives the angular acceleration
 _REST = vector(np.zeros(6), "rest")
 
@@ -80,6 +83,10 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         limits: of speed and acceleration.
         workspaces: frame → where its targets may lie. One beyond is brought back to the surface; by how much is in the
             channel `planner/FRAME/clamped` (3,) m of `Reference.diagnostics`.
+        lookahead: of a preview of the first task, through the targets that the inner source knows of; None for none.
+
+    Raises:
+        ConfigError: a preview is wanted and the inner source does not say what is `coming`.
     """
 
     def __init__(
@@ -88,9 +95,12 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         place: Place,
         limits: PlannerLimits | None = None,
         workspaces: Mapping[str, Workspace] | None = None,
+        lookahead: Lookahead | None = None,
     ) -> None:
+        if lookahead is not None and not hasattr(inner, "coming"):
+            raise ConfigError(f"a preview needs a source that says what is coming, and {type(inner).__name__} does not")
         self.inner, self.limits, self._place = inner, limits or PlannerLimits(), place
-        self.workspaces = dict(workspaces or {})
+        self.workspaces, self.lookahead = dict(workspaces or {}), lookahead
 
     def init(self, estimate: Estimate) -> PlannerState:
         return PlannerState(self.inner.init(estimate), np.array(estimate.q))
@@ -103,17 +113,40 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         if self.workspaces:
             clamped = {f"planner/{name}/clamped": frame.clamped for name, frame in state.frames.items()}
             diagnostics = {**diagnostics, **clamped}
-        return Reference(goal.time, tasks, goal.posture, goal.phase, goal.preview, goal.tuning, diagnostics), state
+        preview = goal.preview
+        if self.lookahead is not None:
+            preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
+        return Reference(goal.time, tasks, goal.posture, goal.phase, preview, goal.tuning, diagnostics), state
 
-    def _planned(self, task: TaskReference, estimate: Estimate, state: PlannerState) -> TaskReference:
-        frame, time = state.frames.get(task.frame), estimate.time
-        if frame is None:
-            frame = state.frames[task.frame] = PlannedFrame(*self._place(np.array(estimate.q), task.frame))
+    def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
+        """What will be said of the first task at later times, s, increasing, if nothing unknown comes between.
+
+        Args: goal: the inner source's last reference; state: after it was planned.
+        """
+        inner: Coming = self.inner  # type: ignore[assignment]  # checked when it was given
+        name = goal.tasks[0].frame
+        frame, now = copy.copy(state.frames[name]), goal
+        waiting = list(inner.coming(state.inner, float(times[-1]) + _ROUNDING))
+        found: list[Reference] = []
+        for time in times.tolist():
+            while waiting and waiting[0].time <= time + _ROUNDING:
+                self._take(now.tasks[0], frame, min(max(now.time, frame.taken + _STEADY), waiting[0].time))
+                now = waiting.pop(0)
+            self._take(now.tasks[0], frame, min(max(now.time, frame.taken + _STEADY), time))
+            found.append(Reference(time, (_placed(now.tasks[0], frame, time),), now.posture, now.phase))
+        return found
+
+    def _take(self, task: TaskReference, frame: PlannedFrame, time: float) -> None:
+        """A new target, if it is one and the last one is old enough."""
         if self._is_new(task, frame) and time >= frame.taken + _STEADY:
             self._retarget(task, frame, time)
-        pose, velocity, acceleration = _now(frame, time)
-        rotation = None if task.rotation is None else pose[1]
-        return TaskReference(task.frame, pose[0], rotation, velocity, acceleration, task.wrench, task.tuning)
+
+    def _planned(self, task: TaskReference, estimate: Estimate, state: PlannerState) -> TaskReference:
+        frame = state.frames.get(task.frame)
+        if frame is None:
+            frame = state.frames[task.frame] = PlannedFrame(*self._place(np.array(estimate.q), task.frame))
+        self._take(task, frame, estimate.time)
+        return _placed(task, frame, estimate.time)
 
     @staticmethod
     def _is_new(task: TaskReference, frame: PlannedFrame) -> bool:
@@ -145,6 +178,15 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         frame.linear = frame.linear.retargeted(time, target, self.limits.linear, least)
         frame.turn = frame.turn.retargeted(time, turn, self.limits.angular, least)
         frame.position, frame.taken, frame.resting = task.position, time, None
+
+
+def _placed(task: TaskReference, frame: PlannedFrame, time: float) -> TaskReference:
+    """A target's task where the plan has it now."""
+    pose, velocity, acceleration = _now(frame, time)
+    rotation = None if task.rotation is None else pose[1]
+    return TaskReference(
+        task.frame, pose[0], rotation, velocity, acceleration, task.wrench, task.tuning, task.task_rotation
+    )
 
 
 def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, Array]:

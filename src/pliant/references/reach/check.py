@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from pliant.errors import ConfigError
@@ -13,7 +13,6 @@ from pliant.references.reach.margins import Bounds, Margin, margins
 from pliant.references.reach.remedy import remedy
 from pliant.robot import Robot
 from pliant.spatial import Array
-from pliant.surfaces import SurfaceGeometry
 
 
 @dataclass(frozen=True)
@@ -71,23 +70,24 @@ def check_reach(
     robot: Robot,
     frame: str,
     course: Course,
-    surfaces: Sequence[SurfaceGeometry] = (),
-    lift: float = 0.0,
+    others: Sequence[Callable[[], Course]] = (),
     bounds: Bounds | None = None,
     posture: PostureOptions | None = None,
     nominal: Array | None = None,
+    solved: PosturePath | None = None,
 ) -> ReachCheck:
     """Whether a robot can do a task.
 
     Args:
         robot: as it is believed.
         frame: the controlled one.
-        course: of the task, on the believed surface.
-        surfaces: others, on which it must be possible, too.
-        lift: m from a surface to the frame: the radius of a tool ball.
+        course: of the task, as it is believed.
+        others: courses that must be possible, too, because the world or a seed may make them so; each is made when it
+            is looked at, and one whose making raises ConfigError is not possible.
         bounds: what must be left; None: the defaults.
         posture: how its joint path is solved, and whether the tool may spin; its period is chosen here.
         nominal: (n,) rad, as of the task.
+        solved: the joint path along `course`, where the task brings its own; None: it is solved here.
 
     Returns:
         "Reachable" is a statement on the sampled course with the joint path found, from rest over its first place; how
@@ -95,12 +95,12 @@ def check_reach(
     """
     limits = bounds or Bounds()
     options = posture or PostureOptions()
-    path, first = _check(robot, frame, course, "believed", limits, nominal, options)
+    path, first = _check(robot, frame, course, "believed", limits, nominal, options, solved)
     found = [first]
     begin = nominal if path is None else path.postures[0]
-    for number, surface in enumerate(surfaces if path is not None else (), start=1):
+    for number, made in enumerate(others if path is not None else (), start=1):
         try:
-            other = course.on(surface, lift)
+            other = made()
         except ConfigError as error:
             found.append(SurfaceCheck(f"drawn {number}", failure=str(error), time=0.0))
             continue
@@ -119,9 +119,10 @@ def _check(
     bounds: Bounds,
     nominal: Array | None,
     options: PostureOptions,
+    solved: PosturePath | None = None,
 ) -> tuple[PosturePath | None, SurfaceCheck]:
     try:
-        posture = solve_course(robot, frame, course, nominal, options)
+        posture = solve_course(robot, frame, course, nominal, options) if solved is None else solved
     except UnreachableError as error:
         return None, SurfaceCheck(label, failure=str(error), time=error.time)
     left = margins(robot, frame, course, posture, bounds, options.spins)

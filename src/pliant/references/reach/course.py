@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from pliant.references.toolpaths.pressing import ForceProfile
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.references.trajectories.rotation import QuaternionSpline
 from pliant.references.trajectories.spline import Spline
+from pliant.signals import Reference
 from pliant.spatial import Array
 from pliant.surfaces import SurfaceGeometry
 
@@ -30,10 +32,10 @@ class Course:
     """(k,) s"""
     places: Array
     """(k, 3) m of the controlled point"""
-    rotations: Array
-    """(k, 3, 3) R_world_tool"""
+    rotations: Array | None
+    """(k, 3, 3) R_world_tool; None: the orientation is free"""
     normals: Array
-    """(k, 3) outward, of the believed surface"""
+    """(k, 3) outward, of the believed surface; zero where nothing is pressed and there is no surface"""
     force: Array
     """(k,) N along the normal; 0 where the tool does not touch"""
     on_path: slice
@@ -41,6 +43,8 @@ class Course:
 
     def motion(self, frame: str) -> FrameMotion:
         """As the motion of a frame."""
+        if self.rotations is None:
+            return FrameMotion(frame, Spline(self.times, self.places))
         turns = np.array([quaternion(R) for R in self.rotations])
         return FrameMotion(frame, Spline(self.times, self.places), QuaternionSpline(self.times, turns))
 
@@ -75,8 +79,7 @@ def course_of(path: Toolpath, force: ForceProfile, stand_off: float, approach_sp
         approach_speed: m/s.
         leave: s of the way up.
     """
-    count = min(max(math.ceil(path.duration / _STEP), _FEWEST), _MOST)
-    along = np.linspace(0.0, path.duration, count + 1)
+    along = instants_of(path.duration)
     pressing = path.force if path.force is not None else force.along(path)
     places = np.array([path.position.at(t).value for t in along.tolist()])
     rotations = np.array([path.rotation.at(t).rotation for t in along.tolist()])
@@ -93,6 +96,28 @@ def course_of(path: Toolpath, force: ForceProfile, stand_off: float, approach_sp
         np.concatenate([np.zeros(5), forces, np.zeros(5)]),
         slice(5, 5 + len(along)),
     )
+
+
+def course_through(references: Sequence[Reference]) -> Course:
+    """The course of the first task of references at increasing times; forces count, moments do not."""
+    tasks = [reference.tasks[0] for reference in references]
+    pushes = np.array([task.wrench[:3] for task in tasks])
+    sizes = np.linalg.norm(pushes, axis=1)
+    turns = [task.rotation for task in tasks if task.rotation is not None]
+    times = np.array([reference.time for reference in references])
+    return Course(
+        times - times[0],
+        np.array([task.position for task in tasks]),
+        np.array(turns) if len(turns) == len(tasks) else None,
+        pushes / np.maximum(sizes, 1e-12)[:, None],
+        sizes,
+        slice(0, len(tasks)),
+    )
+
+
+def instants_of(seconds: float) -> Array:
+    """(k,) s, at which a motion of so many seconds is looked at."""
+    return np.linspace(0.0, seconds, min(max(math.ceil(seconds / _STEP), _FEWEST), _MOST) + 1)
 
 
 def _height(surface: SurfaceGeometry, place: Array, normal: Array, lift: float) -> float:

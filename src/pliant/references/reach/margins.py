@@ -93,7 +93,7 @@ def margins(
     for row, point in enumerate(points):
         q = point.value
         J = np.array(pin.computeFrameJacobian(robot.model, data, q, index, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED))
-        freedom[row] = _freedom(J, course.rotations[row], spins)
+        freedom[row] = _freedom(J, None if course.rotations is None else course.rotations[row], spins)
         n = course.normals[row]
         across = J[:3] - np.outer(n, n @ J[:3])
         weight = np.array(pin.computeGeneralizedGravity(robot.model, data, q))
@@ -117,7 +117,9 @@ def _of_joints(name: str, unit: str, table: Array, joints: Sequence[str], bound:
     return Margin(name, unit, values, tuple(joints[int(row)] for row in rows), bound, least)
 
 
-def _freedom(J: Array, R: Array, spins: bool) -> float:
+def _freedom(J: Array, R: Array | None, spins: bool) -> float:
+    if R is None:
+        return float(np.linalg.svd(J[:3], compute_uv=False)[-1])
     turns = _ARM * (R.T @ J[3:])
     rows = np.vstack([J[:3], turns[:2] if spins else turns])
     return float(np.linalg.svd(rows, compute_uv=False)[-1])

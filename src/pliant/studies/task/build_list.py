@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -21,7 +21,7 @@ from pliant.references.planners.workspace import workspace_of
 from pliant.references.postures.posture import PostureOptions
 from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.source import FrameMotion
-from pliant.references.stages import Stages
+from pliant.references.stages import Ending, Stages
 from pliant.references.trajectories.shapes import lemniscate, sine_line
 from pliant.references.trajectories.trajectory import Hold, Trajectory
 from pliant.robot import Robot
@@ -142,12 +142,24 @@ def _whole(case: TaskCase) -> float:
 def _source(case: TaskCase, made: Listed, lookahead: Lookahead | None) -> ReferenceSource[Any]:
     if made.tracked is not None:
         return made.tracked if lookahead is None else Foreseen(made.tracked, lookahead)
+    return planner_of(case, made, lookahead)
+
+
+def planner_of(
+    case: TaskCase, made: Listed, lookahead: Lookahead | None = None, in_time: bool = False
+) -> HarmonicPlanner:
+    """Motion through the targets. Args: in_time: each phase lasts as long as it may, whatever is felt, and
+    no target is brought back into reach."""
     robot, frame = made.robot, frame_of(case)
     stages = stages_of(case, robot, robot.placement(made.start, frame)[1])
-    tuning = made.believed.tunings.get(frame, made.parameters.impedances().get(frame))
+    if in_time:
+        both = zip(stages, case.phase, strict=True)
+        stages = tuple(replace(stage, endings=(Ending(phase.longest),)) for stage, phase in both)
+    tuning = made.parameters.impedances().get(frame, made.believed.tunings.get(frame))
     wanted = Stages(robot, stages, tuning, made.parameters.whole_tuning(), changes_of(case))
     limits = PlannerLimits(linear=MotionLimits(case.planner.speed, case.planner.acceleration))
-    return HarmonicPlanner(wanted, robot.placement, limits, {frame: workspace_of(robot, frame)})
+    workspaces = {} if in_time else {frame: workspace_of(robot, frame)}
+    return HarmonicPlanner(wanted, robot.placement, limits, workspaces, lookahead)
 
 
 def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:

@@ -1,37 +1,73 @@
-"""Whether a robot can do a task, on the believed surface and on those that the seeds draw."""
+"""Whether a robot can do a task: as it is believed, and in the worlds that the seeds draw."""
 
 from __future__ import annotations
 
-from pliant.errors import ConfigError
+from functools import partial
+
+import numpy as np
+
 from pliant.references.postures.posture import PostureOptions
 from pliant.references.reach.check import ReachCheck, check_reach
-from pliant.references.reach.course import course_of
+from pliant.references.reach.course import Course, course_of, course_through, instants_of
+from pliant.signals import Estimate
+from pliant.studies.task.build_list import listed, planner_of
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import force_of, laid_out
 from pliant.studies.task.world import true_surface
 
-_DRAWN = 10
+CHECKED_DRAWS = 10
 
 
-def checked_reach(case: TaskCase, drawn: int = _DRAWN) -> ReachCheck:
-    """Reach, limits, freedom, torque and speed along the whole task. Args: drawn: how many true surfaces.
+def checked_path(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
+    """Of a task of one path, on the believed surface and on true ones.
 
     Raises:
-        PliantError: a robot, frame or path that there is not; a task without a path on a surface.
+        PliantError: a robot, frame or path that there is not.
     """
-    if case.phase:
-        raise ConfigError("`pliant task check` checks paths on a surface; this task is a list of [[phase]]")
     robot, surface, path = laid_out(case, case.robot)
     phases = case.phases
     course = course_of(path, force_of(case), phases.stand_off, phases.approach_speed, phases.leave)
-    seeds = (case.model_copy(update={"seed": case.seed + index}) for index in range(drawn))
-    true = [true_surface(one, surface, path).geometry for one in seeds]
+    true = [true_surface(one, surface, path).geometry for one in _seeds(case, drawn)]
     return check_reach(
         robot,
         case.tool.frame,
         course,
-        true,
-        case.tool.radius,
+        [partial(course.on, one, case.tool.radius) for one in true],
         posture=PostureOptions(spins=case.path.spins),
         nominal=robot.home,
     )
+
+
+def checked_list(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
+    """Of a list of phases: its first frame, each phase as long as it may last, with the events at the times that the
+    seeds draw; without events there is one course alone.
+
+    Raises:
+        PliantError: what cannot be run.
+    """
+    made = listed(case)
+    return check_reach(
+        made.robot,
+        made.believed.frames[0],
+        _course(case),
+        [partial(_course, one) for one in _seeds(case, drawn if case.event else 0)],
+        nominal=made.start,
+        solved=None if made.tracked is None else made.tracked.path,
+    )
+
+
+def _seeds(case: TaskCase, drawn: int) -> list[TaskCase]:
+    return [case.model_copy(update={"seed": case.seed + index}) for index in range(drawn)]
+
+
+def _course(case: TaskCase) -> Course:
+    """Where the first frame of a list goes if no phase ends before it must."""
+    made = listed(case)
+    times = instants_of(made.duration)
+    if made.tracked is not None:
+        return course_through([made.tracked.at(time, time) for time in times.tolist()])
+    planner, nothing = planner_of(case, made, in_time=True), np.zeros(made.robot.n)
+    estimate = Estimate(0.0, made.start, nothing, nothing, nothing)
+    goal, _ = planner.inner.step(estimate, planner.inner.init(estimate))
+    _, state = planner.step(estimate, planner.init(estimate))
+    return course_through(planner.foreseen(goal, state, times))

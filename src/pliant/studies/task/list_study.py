@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from pliant.errors import ConfigError
 from pliant.experiments.base import Experiment, Result
-from pliant.experiments.tuning import Tuning
+from pliant.references.reach.check import ReachCheck
 from pliant.studies.task.build_list import build_list, listed
+from pliant.studies.task.check import CHECKED_DRAWS, checked_list
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.draw_list import list_figures
 from pliant.studies.task.measure_list import check_accept_of_list, measured_list
-from pliant.studies.task.study import TaskStudy
+from pliant.studies.task.task_study import TaskStudy
+from pliant.studies.task.tuning import Searched
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
 
 class ListStudy(TaskStudy):
     """Runs of one task of `[[phase]]`."""
-
-    worst = ()
 
     def build(self, config: TaskCase) -> Experiment:
         check_accept_of_list(config)
@@ -36,8 +35,12 @@ class ListStudy(TaskStudy):
             return f"the force limit was passed: {peak:.3g} N, limits.force allows {allowed:g} N"
         return None
 
-    def tuning(self, controller: str, case: str | None = None) -> Tuning:
-        raise ConfigError("a list of phases cannot be tuned yet: --tune searches on a task with a path on a surface")
+    def searched(self, config: TaskCase) -> Searched:
+        made = listed(config)
+        return Searched(made.robot, made.believed)
+
+    def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
+        return checked_list(config, drawn)
 
     def figures(self, config: TaskCase, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return list_figures(config, listed(config), experiment, log, folder)

@@ -1,0 +1,59 @@
+"""A task of one path on a surface, as a study."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from pliant.experiments.base import Experiment, Result
+from pliant.references.reach.check import ReachCheck
+from pliant.studies.task import draw
+from pliant.studies.task.build import build, planned
+from pliant.studies.task.check import CHECKED_DRAWS, checked_path
+from pliant.studies.task.config import TaskCase
+from pliant.studies.task.measure import WORST, Signals, check_accept, measured, signals_of
+from pliant.studies.task.task_study import TaskStudy
+from pliant.studies.task.tuning import Searched
+from pliant.studies.task.world import true_surface
+from pliant.telemetry.log import Log
+from pliant.telemetry.summary import Metric
+
+
+class PathStudy(TaskStudy):
+    """Runs of one task of a path on a surface."""
+
+    worst = WORST
+
+    def build(self, config: TaskCase) -> Experiment:
+        check_accept(config.accept)
+        return build(config)
+
+    def metrics(self, config: TaskCase, log: Log) -> tuple[Metric, ...]:
+        return measured(self._signals(config, log), config.accept)
+
+    def verdict(self, config: TaskCase, metrics: Sequence[Metric]) -> str | None:
+        if not metrics:
+            return "the run ended before the path began: no contact was found in time"
+        allowed = config.limits.force
+        peak = next(metric.value for metric in metrics if metric.name == "force_peak")
+        if allowed is not None and peak > allowed:
+            return f"the force limit was passed: {peak:.3g} N along the normal, limits.force allows {allowed:g} N"
+        return None
+
+    def searched(self, config: TaskCase) -> Searched:
+        made = planned(config)
+        return Searched(made.robot, config.believed(made.surface))
+
+    def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
+        return checked_path(config, drawn)
+
+    def figures(self, config: TaskCase, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+        return draw.run_figures(config, experiment, log, self._signals(config, log), folder)
+
+    def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
+        return draw.comparison(results, folder)
+
+    def _signals(self, config: TaskCase, log: Log) -> Signals:
+        made = planned(config)
+        surface = true_surface(config, made.surface, made.path)
+        return signals_of(log, config.tool.frame, surface.geometry, made.robot.torque_limit)

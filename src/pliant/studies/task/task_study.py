@@ -1,0 +1,73 @@
+"""A task file as a study: its variants are the cases, its `[sweep]` the rows."""
+
+from __future__ import annotations
+
+import itertools
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pliant.configuration import merged, overlaid
+from pliant.errors import ConfigError
+from pliant.experiments.base import Study
+from pliant.experiments.case import Case, Row, seeded
+from pliant.experiments.tuning import Tuning, nested
+from pliant.references.reach.check import ReachCheck
+from pliant.studies.task.check import CHECKED_DRAWS
+from pliant.studies.task.config import TaskCase
+from pliant.studies.task.tuning import Searched, tuning_of
+
+_SEEDS = 3
+
+
+class TaskStudy(Study[TaskCase]):
+    """Runs of one task, whatever its kind.
+
+    Args:
+        name: of the task: its file or its name in the catalogue.
+        cases: name → run; the first is the task itself, the others are its variants.
+    """
+
+    def __init__(self, name: str, cases: Mapping[str, TaskCase]) -> None:
+        self.name = name
+        self.cases = {case: Case(config, (), _draws) for case, config in cases.items()}
+        self.title = next(iter(cases.values())).description or "a contact task"
+
+    def rows(self, base: TaskCase) -> Sequence[Row]:
+        """Every combination of the values of `[sweep]`."""
+        sweep = {key: values for key, values in base.sweep.items() if key != "seeds"}
+        for key, values in sweep.items():
+            if not isinstance(values, list | tuple):
+                raise ConfigError(f"sweep.{key}: a list of values, got {values!r}")
+        rows: list[Row] = []
+        for values in itertools.product(*sweep.values()):
+            changes: dict[str, Any] = {}
+            for key, value in zip(sweep, values, strict=True):
+                changes = overlaid(None, changes, nested({key: value}))
+            named = [f"{key} {value}" for key, value in zip(sweep, values, strict=True) if key != "controller"]
+            controller = changes.pop("controller", None)
+            rows.append(Row(", ".join(named), controller, changes))
+        return rows
+
+    def shows(self, config: TaskCase) -> bool:
+        return config.seed == 0
+
+    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+        config = merged(self.case(case or next(iter(self.cases))), {"controller": controller})
+        return tuning_of(config, self.searched(config))
+
+    @abstractmethod
+    def searched(self, config: TaskCase) -> Searched:
+        """What a search over the controller's parameters starts from."""
+
+    @abstractmethod
+    def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
+        """Reach, limits, freedom, torque and speed along the whole task. Args: drawn: how many drawn worlds.
+
+        Raises:
+            PliantError: a robot, frame or path that there is not.
+        """
+
+
+def _draws(base: TaskCase, seeds: int | None) -> Sequence[Mapping[str, Any]]:
+    return seeded(int(base.sweep.get("seeds", _SEEDS)))(base, seeds)
