@@ -13,42 +13,46 @@ namespace pliant::impedance {
 
 struct AccountConfig {
   bool active;
-  double period;       // s
-  double deposit;      // share that is kept of an income beyond the debt
-  double ceiling;      // J, largest balance
-  double savings;      // J, most of what is beyond it that is put aside
-  double spend;        // share of the balance beyond the reserve that one step may spend
-  double damping;      // largest force that repays a debt, as a multiple of the slope times the step
-  double tolerance;    // J, debt that does not weaken the axis
-  double speed[2];     // m/s, rad/s: the tolerance is at least K_0/2 (speed period)^2
-  double kick[2];      // m/s, rad/s: a step may come out otherwise than expected by so much times the period
-  double trickle;      // W that an overdrawn axis may always let out
-  double trust;        // share per period with which it is learned how right the expected steps are
-  double peak_keep;    // share of the largest recent step, slope and surprise that is kept per period
-  double forgiveness;  // share of the debt beyond the tolerance that is written off per period
+  double period;         // s
+  double deposit;        // share that is kept of an income beyond the debt
+  double ceiling;        // J, largest balance
+  double savings;        // J, most of what is beyond it that is put aside
+  double spend;          // share of the balance beyond the reserve that one step may spend
+  double damping;        // largest force that repays a debt, as a multiple of the slope times the step
+  double tolerance;      // J, debt that does not weaken the axis
+  double speed[2];       // m/s, rad/s: the tolerance is at least K_0/2 (speed period)^2
+  double kick[2];        // m/s, rad/s: a step may come out otherwise than expected by so much times the period
+  double trickle;        // W that an overdrawn axis may always let out
+  double trust;          // share per period with which it is learned how right the expected steps are
+  double peak_keep;      // share of the largest recent step and slope that is kept per period
+  double surprise_keep;  // share of the largest recent surprise that is kept per period
+  double forgiveness;    // share of the debt beyond the tolerance that is written off per period
 };
 
 // What Python hands over, in the order of AccountConfig's fields after the period.
 constexpr const char* kAccountNames[] = {
-    "deposit",       "ceiling", "savings",      "spend",   "damping", "tolerance", "speed",
-    "speed_angular", "kick",    "kick_angular", "trickle", "trust",   "peak_keep", "forgiveness",
+    "deposit", "ceiling",      "savings", "spend", "damping",   "tolerance",     "speed",       "speed_angular",
+    "kick",    "kick_angular", "trickle", "trust", "peak_keep", "surprise_keep", "forgiveness",
 };
 constexpr int kAccountNumbers = sizeof(kAccountNames) / sizeof(kAccountNames[0]);
 
+// So many periods back it is looked for a step that comes again.
+constexpr int kSteps = 6;
+
 // State of one axis between two ticks; doubles only.
 struct AccountState {
-  double balance;    // J taken in beyond what is stored
-  double savings;    // J put aside for what comes from outside: changes of the tuning, torque that was not sent
-  double stored;     // J, E of the error
-  double step;       // by which the error moved in the last period, targets that jump left out
-  double step_last;  // in the one before
-  double target;     // by which the target moved the error in the last period
-  double peak;       // largest recent step
-  double expected;   // step that was expected for the period that follows
-  double surprise;   // largest recent difference of a step to what was expected
-  double right;      // recent mean of the expected step times the real one
-  double size;       // of its absolute value
-  double slope;      // largest recent slope of the profile over a step, at least K_0, N/m or N m/rad
+  double balance;         // J taken in beyond what is stored
+  double savings;         // J put aside for what comes from outside: changes of the tuning, torque that was not sent
+  double stored;          // J, E of the error
+  double steps[kSteps];   // by which the error moved in the last periods, newest first, targets that jump left out
+  double misses[kSteps];  // recent mean square of what each guess of a step was off
+  double target;          // by which the target moved the error in the last period
+  double peak;            // largest recent step
+  double expected;        // step that was expected for the period that follows
+  double surprise;        // largest recent difference of a step to what was expected
+  double right;           // recent mean of the expected step times the real one
+  double size;            // of its absolute value
+  double slope;           // largest recent slope of the profile over a step, at least K_0, N/m or N m/rad
 };
 
 // What moved the error in the last period.
@@ -81,6 +85,37 @@ inline void add_outside(const AccountConfig& c, AccountState& a, double income) 
   add(c, a, income + paid);
 }
 
+// What the next step could be: the last change goes on, or the step of i + 1 periods before comes again.
+inline double guess(const AccountState& a, int i) {
+  if (i > 0) return a.steps[i];
+  const double size = std::max(std::fabs(a.steps[0]), std::fabs(a.steps[1]));
+  return std::min(std::max(2.0 * a.steps[0] - a.steps[1], -size), size);
+}
+
+// That what was repeated comes again is believed only where it was the better guess by far.
+inline double likely_step(const AccountState& a) {
+  int best = 0;
+  double least = 0.5 * a.misses[0];
+  for (int i = 1; i < kSteps; ++i) {
+    if (a.misses[i] >= least) continue;
+    least = a.misses[i];
+    best = i;
+  }
+  return guess(a, best);
+}
+
+inline void learn(const AccountConfig& c, AccountState& a, double step) {
+  for (int i = 0; i < kSteps; ++i) {
+    const double miss = step - guess(a, i);
+    a.misses[i] += c.trust * (miss * miss - a.misses[i]);
+  }
+  std::copy_backward(a.steps, a.steps + kSteps - 1, a.steps + kSteps);
+  a.steps[0] = step;
+  a.surprise = std::max(std::fabs(a.expected - step), a.surprise * c.surprise_keep);
+  a.right += c.trust * (a.expected * step - a.right);
+  a.size += c.trust * (std::fabs(a.expected * step) - a.size);
+}
+
 // Books the last period. A target that moves the error by r supplies h r, or what the profile stores more if that is
 // more.
 inline void book(const AccountConfig& c, Shape shape, const Axis& p, AccountState& a, const Motion& m) {
@@ -90,13 +125,9 @@ inline void book(const AccountConfig& c, Shape shape, const Axis& p, AccountStat
   const double own = m.force * (m.robot - m.from);
   add_outside(c, a, m.work - own);
   add(c, a, own - (between - a.stored) + std::max(m.force * target - (stored - between), 0.0));
-  a.step_last = a.step;
-  a.step = m.robot - m.from + smaller_of_a_kind(target, a.target);
+  learn(c, a, m.robot - m.from + smaller_of_a_kind(target, a.target));
   a.target = target;
   a.stored = stored;
-  a.surprise = std::max(std::fabs(a.expected - a.step), a.surprise * c.peak_keep);
-  a.right += c.trust * (a.expected * a.step - a.right);
-  a.size += c.trust * (std::fabs(a.expected * a.step) - a.size);
 }
 
 // What the profile stores more after a change of the tuning is taken from savings and balance as far as they go: the
@@ -119,8 +150,7 @@ struct Budget {
 };
 
 inline Budget budget(Shape shape, const Axis& p, const AccountState& a, double error) {
-  const double size = std::max(std::fabs(a.step), std::fabs(a.step_last));
-  const double d = std::min(std::max(2.0 * a.step - a.step_last, -size), size);
+  const double d = likely_step(a);
   if (d == 0.0) return {0.0, 0.0, 0.0, a.balance};
   const double gain = energy(shape, p, error + d) - a.stored;
   const double reversal = gain + energy(shape, p, error - d) - a.stored;
@@ -159,7 +189,7 @@ inline double allowed_force(const AccountConfig& c, const Axis& p, AccountState&
   const double way = c.speed[rotates] * c.period;
   const double tolerance = std::max(c.tolerance, 0.5 * p.stiffness * way * way);
   a.balance += c.forgiveness * std::max(-left(a, tolerance), 0.0);
-  a.peak = std::max(std::fabs(a.step), a.peak * c.peak_keep);
+  a.peak = std::max(std::fabs(a.steps[0]), a.peak * c.peak_keep);
   return bounded_by_rest(c, a, tolerance, b.step, h, rotates);
 }
 

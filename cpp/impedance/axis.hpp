@@ -43,7 +43,8 @@ inline void restart(const AxisConfig& c, Shape shape, const Axis& p, AxisState& 
   AccountState& a = s.account;
   add(c.account, a, by_target ? work : work - (stored - a.stored));
   a.stored = stored;
-  a.step = a.step_last = a.target = a.expected = 0.0;
+  std::fill(a.steps, a.steps + kSteps, 0.0);
+  a.target = a.expected = 0.0;
 }
 
 inline void retune(const AxisConfig& c, Shape shape, Axis& p, AxisState& s, double error, const Axis& tuned) {

@@ -121,8 +121,8 @@ AxisConfig axis_config(const std::string& law, double period, double rate_gain, 
   const auto values = nb::cast<ConstVector>(account);
   expect(values.shape(0), kAccountNumbers, "account");
   const double* v = values.data();
-  config.account = {true, period,       v[0],         v[1],  v[2],  v[3],  v[4],
-                    v[5], {v[6], v[7]}, {v[8], v[9]}, v[10], v[11], v[12], v[13]};
+  config.account = {true,         period,       v[0],  v[1],  v[2],  v[3],  v[4], v[5],
+                    {v[6], v[7]}, {v[8], v[9]}, v[10], v[11], v[12], v[13], v[14]};
   return config;
 }
 

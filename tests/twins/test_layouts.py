@@ -26,9 +26,9 @@ def test_settings_and_materials_are_handed_over_in_the_order_of_the_core() -> No
     """Numbers that differ from each other, so that two that changed places would be seen."""
     account = AccountSettings()
     row = dict(zip(_impedance.ACCOUNT, account.numbers(1e-3), strict=True))
-    for name in _impedance.ACCOUNT[:-2]:
+    for name in _impedance.ACCOUNT[:-3]:
         assert row[name] == getattr(account, name), name
-    assert (row["peak_keep"], row["forgiveness"]) == account.rates(1e-3)
+    assert (row["peak_keep"], row["surprise_keep"], row["forgiveness"]) == account.rates(1e-3)
     assert tuple(field.name for field in fields(ContactMaterial)) == _contact.MATERIAL
     numbers = [float(place) for place, _ in enumerate(_contact.MATERIAL)]
     assert ContactMaterial(*numbers).row().tolist() == numbers

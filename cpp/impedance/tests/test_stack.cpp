@@ -17,8 +17,8 @@ constexpr double kPeriod = 1e-3;  // s
 
 AxisConfig config(Law law) {
   AxisConfig c{{law, kPeriod, 0.1, 0.01, 50.0, 0.05, 0.05}, {}};
-  c.account = {law == Law::Capped, kPeriod,     0.5,  1.0,  1.0,  0.5, 1.0, 1e-4,
-               {0.01, 0.05},       {0.05, 0.2}, 1e-3, 0.01, 0.99, 1e-3};
+  c.account = {law == Law::Capped, kPeriod,     0.5,  1.0,  1.0,  0.5,   1.0, 1e-4,
+               {0.01, 0.05},       {0.05, 0.2}, 1e-3, 0.01, 0.99, 0.999, 1e-3};
   return c;
 }
 

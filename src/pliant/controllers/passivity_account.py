@@ -52,21 +52,26 @@ class AccountSettings:
     """share per period with which it is learned how right the expected steps are: debts are repaid by as much, for
     motions that turn within a few periods would take from a force that repays"""
     peak_time: float = 0.1
-    """s for which the largest recent step, slope and surprise count as what may come next"""
+    """s for which the largest recent step and slope count as what may come next"""
+    surprise_time: float = 1.0
+    """s for which a step that came out otherwise than expected counts as what may come again"""
     forgiveness_time: float = 0.5
     """s over which debt beyond the tolerance is written off"""
 
     def numbers(self, period: float) -> Array:
-        """(14,) as the compiled core takes them, for a period in s."""
+        """(15,) as the compiled core takes them, for a period in s."""
         levels = (self.deposit, self.ceiling, self.savings, self.spend, self.damping, self.tolerance)
         speeds = (self.speed, self.speed_angular, self.kick, self.kick_angular)
         return np.array([*levels, *speeds, self.trickle, self.trust, *self.rates(period)])
 
-    def rates(self, period: float) -> tuple[float, float]:
-        """Shares per period of s: kept of the largest recent values, written off of a debt."""
-        return math.exp(-period / self.peak_time), -math.expm1(-period / self.forgiveness_time)
+    def rates(self, period: float) -> tuple[float, float, float]:
+        """Shares per period of s: kept of the largest recent step and of the largest surprise, written off of a debt."""
+        keep, memory = math.exp(-period / self.peak_time), math.exp(-period / self.surprise_time)
+        return keep, memory, -math.expm1(-period / self.forgiveness_time)
 
 
+STEPS = 6
+"""so many periods back it is looked for a step that comes again"""
 SMALL_STEP = 1e-6
 """m or rad: below it the difference of energies is rounding"""
 ACCOUNT = AccountSettings()
@@ -85,10 +90,10 @@ class AccountState:
     """J put aside"""
     stored: Array
     """J, E of the error"""
-    step: Array
-    """by which the error moved in the last period, m or rad; targets that jump are left out"""
-    step_last: Array
-    """in the one before"""
+    steps: Array
+    """(STEPS, k) by which the error moved in the last periods, newest first, m or rad; targets that jump are left out"""
+    misses: Array
+    """(STEPS, k) recent mean square of what each guess of a step was off"""
     target: Array
     """by which the target moved the error in the last period, m or rad"""
     peak: Array
@@ -130,7 +135,8 @@ class Account:
     def init(self, profile: ForceProfile, error: Array) -> AccountState:
         """An empty account at an error (k,), m or rad."""
         zero = np.zeros_like(error)
-        return AccountState(profile, zero, zero, profile.energy(error), *(zero,) * 9)
+        rows = np.zeros((STEPS, *error.shape))
+        return AccountState(profile, zero, zero, profile.energy(error), rows, rows, *(zero,) * 7)
 
     def book(self, state: AccountState, last: Array, force: Array, error: Array, motion: Motion) -> AccountState:
         """Books a period in which the error went from `last` to `error` (k,) and h = `force` (k,) was asked for.
@@ -145,11 +151,7 @@ class Account:
         state = self._add(state, own - (between - state.stored) + supplied)
         smooth = np.where(np.abs(target) < np.abs(state.target), target, state.target)
         step = motion.robot - last + np.where(target * state.target > 0.0, smooth, 0.0)
-        moved = replace(state, stored=stored, step=step, step_last=state.step, target=target)
-        hit, trust = state.expected * step, self.settings.trust
-        right, size = state.right + trust * (hit - state.right), state.size + trust * (np.abs(hit) - state.size)
-        surprise = np.maximum(np.abs(state.expected - step), state.surprise * self.settings.rates(self.period)[0])
-        return replace(moved, right=right, size=size, surprise=surprise)
+        return self._learn(replace(state, stored=stored, target=target), step)
 
     def restate(self, state: AccountState, profile: ForceProfile, error: Array) -> AccountState:
         """A change of the tuning: what is stored more is paid as far as savings and balance go.
@@ -170,9 +172,8 @@ class Account:
             wanted: (k,) force of the law, N or N·m.
         """
         profile, settings, period = state.profile, self.settings, self.period
-        keep, forgiven = settings.rates(period)
-        size = np.maximum(np.abs(state.step), np.abs(state.step_last))
-        d = np.clip(2.0 * state.step - state.step_last, -size, size)
+        keep, _, forgiven = settings.rates(period)
+        d = likely_step(state)
         gain = profile.energy(error + d) - state.stored
         reversal = gain + profile.energy(error - d) - state.stored
         balance = state.balance - np.maximum(reversal, 0.0)
@@ -187,9 +188,18 @@ class Account:
         force = np.where(d != 0.0, np.clip(force, -profile.force_max, profile.force_max), wanted)
         tolerance = np.maximum(settings.tolerance, 0.5 * profile.stiffness * (self.speed * period) ** 2)
         overdraft = np.maximum(-(state.stored + state.balance + tolerance), 0.0)
-        peak = np.maximum(np.abs(state.step), state.peak * keep)
+        peak = np.maximum(np.abs(state.steps[0]), state.peak * keep)
         state = replace(state, balance=state.balance + forgiven * overdraft, peak=peak, slope=slope, expected=d)
         return self._bounded_by_rest(state, tolerance, force), state
+
+    def _learn(self, state: AccountState, step: Array) -> AccountState:
+        """What a step (k,) says of the guesses that were made of it."""
+        hit, trust = state.expected * step, self.settings.trust
+        misses = state.misses + trust * ((step - guesses(state)) ** 2 - state.misses)
+        right, size = state.right + trust * (hit - state.right), state.size + trust * (np.abs(hit) - state.size)
+        surprise = np.maximum(np.abs(state.expected - step), state.surprise * self.settings.rates(self.period)[1])
+        steps = np.concatenate([step[None], state.steps[:-1]])
+        return replace(state, steps=steps, misses=misses, right=right, size=size, surprise=surprise)
 
     def _bounded_by_rest(self, state: AccountState, tolerance: Array, force: Array) -> Array:
         """However the next step comes out, within what surprised of late, what leaves (k,) is left.
@@ -218,3 +228,16 @@ class Account:
         """An income from outside; a cost is taken from the savings first."""
         paid = np.minimum(np.maximum(-income, 0.0), state.savings)
         return self._add(replace(state, savings=state.savings - paid), income + paid)
+
+
+def guesses(state: AccountState) -> Array:
+    """(STEPS, k) what the next step could be: the last change goes on, or what came 2, 3 … periods before comes again."""
+    last, before = state.steps[:2]
+    size = np.maximum(np.abs(last), np.abs(before))
+    return np.concatenate([np.clip(2.0 * last - before, -size, size)[None], state.steps[1:]])
+
+
+def likely_step(state: AccountState) -> Array:
+    """(k,) the step that is expected: a repetition is believed only where it was the better guess by far."""
+    misses = np.concatenate([0.5 * state.misses[:1], state.misses[1:]])
+    return np.take_along_axis(guesses(state), np.argmin(misses, axis=0)[None], axis=0)[0]
