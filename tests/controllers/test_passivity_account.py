@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -27,9 +28,11 @@ def test_the_largest_surprise_decays_with_its_own_time() -> None:
         assert jumped.surprise[0] == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("cycle", [[0.3, -0.3], [0.3, -0.4, 0.1], [0.1, 0.3, -0.2, -0.2], [1.0, -0.2, -0.2, -0.2, -0.4]])
+@pytest.mark.parametrize(
+    "cycle", [[0.3, -0.3], [0.3, -0.4, 0.1], [0.1, 0.3, -0.2, -0.2], [1.0, -0.2, -0.2, -0.2, -0.4]]
+)
 def test_a_step_that_comes_again_is_foreseen(cycle: list[float]) -> None:
-    """mm a period: cycles of 2 to 5 periods are known after a few rounds; a smooth motion goes on as before."""
+    """mm a period: cycles of 2 to 4 periods are known after a few rounds."""
     one, error = np.ones(1), np.zeros(1)
     profile = ForceProfile.of(ImpedanceTuning(500.0 * one, 50.0 * one, 0.3 * one))
     account = Account(1e-3, one, one)
@@ -47,6 +50,6 @@ def test_a_smooth_motion_is_foreseen_by_its_change() -> None:
     account = Account(1e-3, one, one)
     errors = 0.02 * np.sin(2.0 * math.pi * 5.0 * 1e-3 * np.arange(400))[:, None]
     state = account.init(profile, errors[0])
-    for last, error in zip(errors[:-1], errors[1:-1], strict=False):
+    for last, error in pairwise(errors[:-1]):
         state = account.book(state, last, np.zeros(1), error, Motion(error, np.zeros(1)))
     assert likely_step(state)[0] == pytest.approx((errors[-1] - errors[-2])[0], rel=0.01)

@@ -65,7 +65,7 @@ class AccountSettings:
         return np.array([*levels, *speeds, self.trickle, self.trust, *self.rates(period)])
 
     def rates(self, period: float) -> tuple[float, float, float]:
-        """Shares per period of s: kept of the largest recent step and of the largest surprise, written off of a debt."""
+        """Shares per period of s: kept of the largest step and of the largest surprise, written off of a debt."""
         keep, memory = math.exp(-period / self.peak_time), math.exp(-period / self.surprise_time)
         return keep, memory, -math.expm1(-period / self.forgiveness_time)
 
@@ -91,7 +91,7 @@ class AccountState:
     stored: Array
     """J, E of the error"""
     steps: Array
-    """(STEPS, k) by which the error moved in the last periods, newest first, m or rad; targets that jump are left out"""
+    """(STEPS, k) by which the error moved in the last periods, newest first, m or rad; without targets that jump"""
     misses: Array
     """(STEPS, k) recent mean square of what each guess of a step was off"""
     target: Array
@@ -231,7 +231,7 @@ class Account:
 
 
 def guesses(state: AccountState) -> Array:
-    """(STEPS, k) what the next step could be: the last change goes on, or what came 2, 3 … periods before comes again."""
+    """(STEPS, k) what the next step could be: the last change goes on, or what came 2, 3 … periods before comes."""
     last, before = state.steps[:2]
     size = np.maximum(np.abs(last), np.abs(before))
     return np.concatenate([np.clip(2.0 * last - before, -size, size)[None], state.steps[1:]])

@@ -15,6 +15,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, field_validator, model_validator
 
 from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationConfig
+from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
@@ -92,7 +93,7 @@ class HapticConfig(CaseConfig):
         default={}, description="changes to the controller's parameters beside `impedance` and `exploration`"
     )
     torque_step: float | None = quantity(
-        None,
+        DEFAULT_SHARE,
         "1",
         "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         gt=0.0,

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.config import Config, merged
@@ -103,7 +104,7 @@ class PolishingConfig(CaseConfig):
         json_schema_extra={"unit": "s"},
     )
     torque_step: float | None = Field(
-        default=None,
+        default=DEFAULT_SHARE,
         gt=0.0,
         le=1e3,
         description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",

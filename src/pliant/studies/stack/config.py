@@ -13,6 +13,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from pliant.configuration import in_order
 from pliant.controllers.presets import SOFT_STACK, STIFF_STACK, TABLE_I_ROBOT, TABLE_I_SIMULATION
+from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
@@ -142,7 +143,7 @@ class StackConfig(CaseConfig):
         description="changes to the controller's parameters, e.g. control.tasks.ee.translation.stiffness=8000",
     )
     torque_step: float | None = Field(
-        default=0.14,
+        default=DEFAULT_SHARE,
         gt=0.0,
         le=1e3,
         description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
