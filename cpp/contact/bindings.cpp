@@ -6,7 +6,10 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
+#include "sampled.hpp"
 #include "world.hpp"
 
 namespace nb = nanobind;
@@ -31,6 +34,89 @@ template <class Array>
 auto array(const nb::object& owner, const char* name) {
   return nb::cast<Array>(owner.attr(name)).data();
 }
+
+// A new array that Python owns.
+nb::ndarray<nb::numpy, double> owned(std::vector<double> values, std::initializer_list<size_t> shape) {
+  auto* kept = new std::vector<double>(std::move(values));
+  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return nb::ndarray<nb::numpy, double>(kept->data(), shape, owner);
+}
+
+size_t rows_of_three(const Constants& points, const char* name) {
+  if (points.ndim() != 2 || points.shape(1) != 3)
+    throw std::invalid_argument(std::string(name) + " must have shape (k, 3)");
+  return points.shape(0);
+}
+
+// f (a point → MeshPlace) of every row.
+template <class F>
+auto for_each_row(const Constants& points, const F& f) {
+  const size_t k = rows_of_three(points, "points");
+  std::vector<double> distance(k), place(3 * k), normal(3 * k);
+  {
+    const double* asked = points.data();
+    nb::gil_scoped_release release;
+    for (size_t i = 0; i < k; ++i) {
+      const MeshPlace found = f(load(asked + 3 * i));
+      distance[i] = found.distance;
+      store(found.point, place.data() + 3 * i);
+      store(found.normal, normal.data() + 3 * i);
+    }
+  }
+  return std::make_tuple(owned(std::move(distance), {k}), owned(std::move(place), {k, 3}),
+                         owned(std::move(normal), {k, 3}));
+}
+
+class TriangleMesh {
+ public:
+  TriangleMesh(const Constants& vertices, const Integers& triangles) : mesh_(checked(vertices, triangles)) {}
+
+  auto nearest(const Constants& points) const {
+    return for_each_row(points, [this](const Vec3& p) { return mesh_.nearest(p); });
+  }
+
+  const Mesh& mesh() const { return mesh_; }
+
+ private:
+  static Mesh checked(const Constants& vertices, const Integers& triangles) {
+    const auto nv = static_cast<int32_t>(rows_of_three(vertices, "vertices"));
+    if (triangles.ndim() != 2 || triangles.shape(1) != 3 || triangles.shape(0) == 0)
+      throw std::invalid_argument("triangles must have shape (k, 3), k above zero");
+    for (size_t i = 0; i < triangles.size(); ++i)
+      if (triangles.data()[i] < 0 || triangles.data()[i] >= nv)
+        throw std::invalid_argument("a triangle names a vertex that there is not");
+    return Mesh(vertices.data(), nv, triangles.data(), static_cast<int>(triangles.shape(0)));
+  }
+
+  Mesh mesh_;
+};
+
+// A mesh seen through samples of its distance. Keeps a copy of them; the mesh must live as long.
+class SampledMesh {
+ public:
+  SampledMesh(const TriangleMesh& mesh, const Constants& low, double step, const Constants& values, double band)
+      : values_(values.data(), values.data() + values.size()), band_(band), mesh_(&mesh.mesh()) {
+    require_size(low.size(), 3, "low");
+    if (values.ndim() != 3) throw std::invalid_argument("values must have three axes");
+    if (!(step > 0.0)) throw std::invalid_argument("the step must be above zero");
+    field_ = {load(low.data()), step, {}, values_.data()};
+    for (size_t i = 0; i < 3; ++i) field_.count[i] = static_cast<int>(values.shape(i));
+  }
+  SampledMesh(const SampledMesh&) = delete;
+  SampledMesh& operator=(const SampledMesh&) = delete;
+
+  auto nearest(const Constants& points) const {
+    return for_each_row(points, [this](const Vec3& p) { return pliant::contact::nearest(*mesh_, field_, band_, p); });
+  }
+
+  const Field* field() const { return &field_; }
+
+ private:
+  std::vector<double> values_;
+  double band_;
+  const Mesh* mesh_;
+  Field field_;
+};
 
 // The contacts of one MuJoCo model and one data. Keeps the Python objects alive that own the memory it looks at.
 class ContactLoop {
@@ -57,14 +143,16 @@ class ContactLoop {
     views_.nv = nb::cast<int>(model_.attr("nv"));
   }
 
-  std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material, bool hollow) {
+  std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material, bool hollow, nb::object field) {
     if (geom_a < 0 || geom_b < 0 || geom_a >= views_.ngeom || geom_b >= views_.ngeom)
       throw std::invalid_argument("a contact pair names a geom that the model does not have");
     require_size(material.size(), kMaterialSize, "material");
     const double* m = material.data();
     const Material made{m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]};
-    const int first = world_.add_pair(views_, geom_a, geom_b, made, hollow);
+    const Field* samples = field.is_none() ? nullptr : nb::cast<const SampledMesh&>(field).field();
+    const int first = world_.add_pair(views_, geom_a, geom_b, made, hollow, samples);
     if (first < 0) throw std::invalid_argument("no contact law for this pair of shapes in this order");
+    fields_.push_back(std::move(field));
     return {first, world_.slots() - first};
   }
 
@@ -99,6 +187,7 @@ class ContactLoop {
   }
 
   nb::object model_, data_;
+  std::vector<nb::object> fields_;
   Views views_{};
   World world_;
   HalfStep step1_, step2_;
@@ -109,13 +198,22 @@ class ContactLoop {
 }  // namespace
 
 NB_MODULE(_contact, m) {
+  nb::set_leak_warnings(false);  // surfaces that a cache keeps until Python ends are no leak
   m.attr("BRISTLE_SIZE") = kBristleSize;
   nb::list material;
   for (const char* name : kMaterialNames) material.append(nb::str(name));
   m.attr("MATERIAL") = nb::tuple(material);
+  nb::class_<TriangleMesh>(m, "TriangleMesh")
+      .def(nb::init<const Constants&, const Integers&>(), "vertices"_a, "triangles"_a)
+      .def("nearest", &TriangleMesh::nearest, "points"_a);
+  nb::class_<SampledMesh>(m, "SampledMesh")
+      .def(nb::init<const TriangleMesh&, const Constants&, double, const Constants&, double>(), nb::keep_alive<1, 2>(),
+           "mesh"_a, "low"_a, "step"_a, "values"_a, "band"_a)
+      .def("nearest", &SampledMesh::nearest, "points"_a);
   nb::class_<ContactLoop>(m, "ContactLoop")
       .def(nb::init<nb::object, nb::object, uintptr_t, uintptr_t>(), "model"_a, "data"_a, "step1"_a, "step2"_a)
-      .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a, "hollow"_a = false)
+      .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a, "hollow"_a = false,
+           "field"_a = nb::none())
       .def_prop_ro("slots", &ContactLoop::slots)
       .def("evaluate", &ContactLoop::evaluate, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
            "point"_a.noconvert(), "penetration"_a.noconvert())

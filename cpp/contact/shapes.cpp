@@ -40,6 +40,18 @@ Touch against_cylinder(const Ball& ball, const Shape& cylinder) {
   return against_round(ball, cylinder, across(ball.centre - cylinder.position, cylinder.rotation.column(2)));
 }
 
+// Outside the samples there is nothing to touch; a place that is no number stays one.
+Touch against_field(const Ball& ball, const Shape& part) {
+  constexpr double kFar = 1.0;  // m
+  const Vec3 up = part.rotation.column(2);
+  const Distance found = part.field->at(part.rotation.to_local(ball.centre - part.position));
+  if (!found.known) return {ball.centre, up, -kFar + 0.0 * dot(ball.centre, ball.centre)};
+  const double length = norm(found.gradient);
+  const Vec3 normal = length > kTiny ? part.rotation.to_world((1.0 / length) * found.gradient) : up;
+  const double gap = found.value - ball.radius;
+  return {ball.centre - (ball.radius + 0.5 * gap) * normal, normal, -gap};
+}
+
 // A centre inside the box leaves through the nearest face.
 Touch inside_box(const Ball& ball, const Shape& box, const Vec3& local) {
   int axis = 0;
@@ -118,7 +130,7 @@ Ball ball_of_corner(const Shape& a, int corner) {
 // The point of a capsule's axis that matters for B, with the capsule's radius.
 Ball ball_of_capsule(const Shape& a, const Shape& b, int slot) {
   const Vec3 half_axis = a.size.y * a.rotation.column(2);
-  if (b.type == ShapeType::kPlane || b.hollow)
+  if (b.type == ShapeType::kPlane || b.type == ShapeType::kField || b.hollow)
     return {slot == 0 ? a.position - half_axis : a.position + half_axis, a.size.x};
   const Vec3 start = a.position - half_axis;
   const Vec3 along = 2.0 * half_axis;
@@ -140,9 +152,10 @@ Ball ball_of_capsule(const Shape& a, const Shape& b, int slot) {
 int slot_count(ShapeType a, ShapeType b, bool hollow) {
   const bool round = b == ShapeType::kSphere || b == ShapeType::kCylinder;
   if (hollow && !round) return 0;
-  if (!round && b != ShapeType::kPlane && b != ShapeType::kBox) return 0;
+  const bool open = b == ShapeType::kPlane || b == ShapeType::kField;
+  if (!round && !open && b != ShapeType::kBox) return 0;
   if (a == ShapeType::kSphere) return 1;
-  if (a == ShapeType::kCapsule) return b == ShapeType::kPlane || hollow ? 2 : 1;
+  if (a == ShapeType::kCapsule) return open || hollow ? 2 : 1;
   if (a == ShapeType::kBox) return round && !hollow ? 0 : kCorners;
   return 0;
 }
@@ -167,6 +180,8 @@ Touch touch(const Shape& a, const Shape& b, int slot) {
       return against_sphere(ball, b);
     case ShapeType::kCylinder:
       return against_cylinder(ball, b);
+    case ShapeType::kField:
+      return against_field(ball, b);
     default:
       return against_box(ball, b);
   }

@@ -10,9 +10,17 @@ namespace {
 constexpr double kFastest = 1e4;    // m/s or rad/s
 constexpr double kStrongest = 1e7;  // N
 
-Shape shape_of(const Views& v, int geom, bool hollow = false) {
-  return {static_cast<ShapeType>(v.geom_type[geom]), load(v.geom_size + 3 * geom), load(v.geom_position + 3 * geom),
-          Rotation{v.geom_rotation + 9 * geom}, hollow};
+ShapeType type_of(const Views& v, int geom, const Field* field) {
+  return field ? ShapeType::kField : static_cast<ShapeType>(v.geom_type[geom]);
+}
+
+Shape shape_of(const Views& v, int geom, bool hollow = false, const Field* field = nullptr) {
+  return {type_of(v, geom, field),
+          load(v.geom_size + 3 * geom),
+          load(v.geom_position + 3 * geom),
+          Rotation{v.geom_rotation + 9 * geom},
+          hollow,
+          field};
 }
 
 Vec3 point_velocity(const Views& v, int body, const Vec3& point) {
@@ -36,12 +44,12 @@ bool velocities_sound(const Views& v) {
 
 }  // namespace
 
-int World::add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow) {
-  const int slots = slot_count(static_cast<ShapeType>(views.geom_type[geom_a]),
-                               static_cast<ShapeType>(views.geom_type[geom_b]), hollow);
+int World::add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow,
+                    const Field* field) {
+  const int slots = slot_count(type_of(views, geom_a, nullptr), type_of(views, geom_b, field), hollow);
   if (slots == 0) return -1;
   const int first = slots_;
-  pairs_.push_back({geom_a, geom_b, material, hollow, first, slots});
+  pairs_.push_back({geom_a, geom_b, material, hollow, field, first, slots});
   slots_ += slots;
   return first;
 }
@@ -50,7 +58,7 @@ bool World::evaluate(const Views& v, double dt, const double* push, double* bris
   std::memcpy(v.body_force, push, sizeof(double) * 6 * static_cast<size_t>(v.nbody));
   bool sound = true;
   for (const Pair& pair : pairs_) {
-    const Shape a = shape_of(v, pair.geom_a), b = shape_of(v, pair.geom_b, pair.hollow);
+    const Shape a = shape_of(v, pair.geom_a), b = shape_of(v, pair.geom_b, pair.hollow, pair.field);
     const int body_a = v.geom_body[pair.geom_a], body_b = v.geom_body[pair.geom_b];
     for (int i = 0; i < pair.slots; ++i) {
       const int slot = pair.first_slot + i;

@@ -12,7 +12,8 @@ namespace pliant::contact {
 struct Pair {
   int geom_a, geom_b;
   Material material;
-  bool hollow;  // geom_b's material is outside of it
+  bool hollow;         // geom_b's material is outside of it
+  const Field* field;  // geom_b's surface, in its axes; null: its own shape
   int first_slot, slots;
 };
 
@@ -43,8 +44,10 @@ using HalfStep = void (*)(const void* model, void* data);
 
 class World {
  public:
-  // Returns the first slot of the pair, or -1 if the shapes are not supported in this order.
-  int add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow);
+  // Returns the first slot of the pair, or -1 if the shapes are not supported in this order. Args: field: the surface
+  // of geom_b, which must live as long as the world; null: its own shape.
+  int add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow,
+               const Field* field = nullptr);
   int slots() const { return slots_; }
   const std::vector<Pair>& pairs() const { return pairs_; }
 

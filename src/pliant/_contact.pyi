@@ -2,6 +2,9 @@
 
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from pliant.spatial import Array
 
 BRISTLE_SIZE: int
@@ -9,6 +12,32 @@ BRISTLE_SIZE: int
 
 MATERIAL: tuple[str, ...]
 """names of the numbers in `material`"""
+
+class TriangleMesh:
+    """Triangles, and which place of them is nearest to a point.
+
+    Raises ValueError: arrays of another shape, no triangle, or one that names a vertex that there is not.
+    """
+
+    def __init__(self, vertices: Array, triangles: npt.NDArray[np.int32]) -> None:
+        """vertices (nv, 3) m; triangles (nt, 3) int32, anticlockwise from outside, each with an area."""
+
+    def nearest(self, points: Array) -> tuple[Array, Array, Array]:
+        """Signed distance (k,) m, place (k, 3) m and outward normal (k, 3) for points (k, 3). A point whose nearest
+        place is on the rim of an open shell is outside."""
+
+class SampledMesh:
+    """A mesh seen through samples of its distance, smooth within `band` m of it; farther away its triangles answer.
+
+    Raises ValueError: arrays of another shape, or a step that is not above zero.
+    """
+
+    def __init__(self, mesh: TriangleMesh, low: Array, step: float, values: Array, band: float) -> None:
+        """values (nx, ny, nz) m at low (3,) + step · (i, j, k)."""
+
+    def nearest(self, points: Array) -> tuple[Array, Array, Array]:
+        """Signed distance (k,) m, and place (k, 3) m and outward unit normal (k, 3) of the smooth surface, for points
+        (k, 3)."""
 
 class ContactLoop:
     """Contacts of one MuJoCo model and data, and the loop of mj_step1, forces, mj_step2.
@@ -18,9 +47,12 @@ class ContactLoop:
     """
 
     def __init__(self, model: Any, data: Any, step1: int, step2: int) -> None: ...
-    def add_pair(self, geom_a: int, geom_b: int, material: Array, hollow: bool = False) -> tuple[int, int]:
+    def add_pair(
+        self, geom_a: int, geom_b: int, material: Array, hollow: bool = False, field: SampledMesh | None = None
+    ) -> tuple[int, int]:
         """Adds a pair of geoms; material (8,) in the order of `ContactMaterial`. Returns its first slot and its number
-        of slots. `hollow`: the material of the second, a sphere or a cylinder, is outside of it.
+        of slots. `hollow`: the material of the second, a sphere or a cylinder, is outside of it. `field`: the surface
+        of the second, in its axes; None: its own shape.
 
         Raises ValueError: an unknown geom, or shapes that are not supported in this order.
         """

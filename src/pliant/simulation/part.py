@@ -1,33 +1,36 @@
-"""A fixed workpiece with a round surface: a rod, the wall of a pipe, a dome, a bowl."""
+"""A fixed workpiece: a rod, the wall of a pipe, a dome, a bowl, or a part given by triangles."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import mujoco
+import numpy as np
 
 from pliant.errors import ConfigError
 from pliant.mujoco_model import VISUAL_GROUP, quaternion
 from pliant.simulation.surface import Surface
-from pliant.surfaces import CylinderSurface, SphereSurface
+from pliant.surfaces import CylinderSurface, MeshSurface, SphereSurface
 
 WOOD = (0.78, 0.70, 0.60, 1.0)
 _ENDLESS = 3.0  # m, half length of MuJoCo's cylinder, beyond any arm's reach; more would take the near out of pictures
+_FRAME = 1e-3  # m, radius of the ball that carries a mesh's frame; it is not seen and does not touch
 _SEEN_THROUGH = 0.35  # opacity of what the tool works inside of
 
 
 @dataclass(frozen=True)
 class Part:
-    """A cylinder or a sphere that cannot move and gives way like a spring and a damper along its normal.
+    """A cylinder, a sphere or a mesh that cannot move and gives way like a spring and a damper along its normal.
 
     Raises:
         ConfigError: on construction, when the half length that is drawn is not above zero.
     """
 
     name: str
-    geometry: CylinderSurface | SphereSurface
-    """where its surface is; a hollow one (touched from within) needs the explicit contact law"""
+    geometry: CylinderSurface | SphereSurface | MeshSurface
+    """where its surface is; a hollow one (touched from within) and a mesh need the explicit contact law"""
     surface: Surface = field(default_factory=Surface)
     length: float = 0.25
     """m, half of what is drawn of a cylinder; the contact has no ends (MuJoCo's: none within 3 m)"""
@@ -39,15 +42,37 @@ class Part:
 
     def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
         """Adds the shape that touches (invisible) and one that shows it. Returns the geom that touches."""
-        round_rod = isinstance(self.geometry, CylinderSurface)
-        kind = mujoco.mjtGeom.mjGEOM_CYLINDER if round_rod else mujoco.mjtGeom.mjGEOM_SPHERE
         place = {"pos": self.geometry.origin, "quat": quaternion(self.geometry.rotation)}
-        radius = self.geometry.radius
-        look = spec.worldbody.add_geom(type=kind, size=[radius, self.length if round_rod else 0.0, 0.0], **place)
-        opacity = min(self.rgba[3], _SEEN_THROUGH) if self.geometry.hollow else self.rgba[3]
+        if isinstance(self.geometry, MeshSurface):
+            look = _mesh_look(spec, self.name, self.geometry, place)
+            touching = spec.worldbody.add_geom(
+                name=self.name, type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[_FRAME, 0.0, 0.0], **place
+            )
+            opacity = self.rgba[3]
+        else:
+            look, touching = self._round(spec, self.geometry, place)
+            opacity = min(self.rgba[3], _SEEN_THROUGH) if self.geometry.hollow else self.rgba[3]
         look.contype, look.conaffinity, look.group, look.rgba = 0, 0, VISUAL_GROUP, [*self.rgba[:3], opacity]
-        geom = spec.worldbody.add_geom(
-            name=self.name, type=kind, size=[radius, _ENDLESS if round_rod else 0.0, 0.0], **place
-        )
-        geom.rgba = [0, 0, 0, 0]
-        return geom
+        touching.rgba = [0, 0, 0, 0]
+        return touching
+
+    def _round(
+        self, spec: mujoco.MjSpec, geometry: CylinderSurface | SphereSurface, place: dict[str, Any]
+    ) -> tuple[mujoco.MjsGeom, mujoco.MjsGeom]:
+        """The shape that is seen and the one that touches."""
+        rod = isinstance(geometry, CylinderSurface)
+        kind = mujoco.mjtGeom.mjGEOM_CYLINDER if rod else mujoco.mjtGeom.mjGEOM_SPHERE
+        look = spec.worldbody.add_geom(type=kind, size=[geometry.radius, self.length if rod else 0.0, 0.0], **place)
+        size = [geometry.radius, _ENDLESS if rod else 0.0, 0.0]
+        return look, spec.worldbody.add_geom(name=self.name, type=kind, size=size, **place)
+
+
+def _mesh_look(spec: mujoco.MjSpec, name: str, geometry: MeshSurface, place: dict[str, Any]) -> mujoco.MjsGeom:
+    triangles = geometry.distance.triangles
+    mesh = spec.add_mesh(
+        name=f"{name}/mesh",
+        uservert=triangles.vertices.astype(np.float32).ravel(),
+        userface=triangles.corners.ravel(),
+        inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,  # open shells have no volume
+    )
+    return spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, **place)

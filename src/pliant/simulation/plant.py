@@ -95,7 +95,9 @@ class MujocoPlant(Plant[World]):
         self._parts = parts.touching_geoms
         pairs = pairs_of(self.scene, self._parts)
         self.model = parts.compile(physics_step, pairs)
-        self.explicit = explicit_contacts(self.model, self.start, pairs, self.scene.hollow) if explicit else None
+        self.explicit = (
+            explicit_contacts(self.model, self.start, pairs, self.scene.hollow, self.scene.meshes) if explicit else None
+        )
         self._sites = {name: self.model.site(name).id for name in dict.fromkeys(frames)}
         things = [thing.name for thing in self.scene.things if can_move(thing)]
         self._movable = {name: self.model.body(name).id for name in things}

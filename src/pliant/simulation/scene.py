@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 import mujoco
 import numpy as np
 
+from pliant._contact import SampledMesh
 from pliant.errors import ConfigError, options
 from pliant.mujoco_model import VISUAL_GROUP, quaternion
 from pliant.simulation.part import WOOD, Part
 from pliant.simulation.surface import Surface
 from pliant.spatial import Array, frame_with_z_along, rpy
-from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
+from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,8 @@ class Scene:
     """Everything the robot can meet, and which law rules the contacts.
 
     Raises:
-        ConfigError: on construction, when two things share a name, the law is unknown, or it cannot do a hollow part.
+        ConfigError: on construction, when two things share a name, the law is unknown, or it cannot do a hollow part
+            or a mesh.
     """
 
     things: tuple[Thing, ...] = ()
@@ -135,11 +138,23 @@ class Scene:
             raise ConfigError(
                 f"part {min(self.hollow)!r} is hollow, which MuJoCo's contacts cannot be: set contact = 'explicit'"
             )
+        if self.meshes and self.contact == "mujoco":
+            raise ConfigError(
+                f"part {min(self.meshes)!r} is a mesh, of which MuJoCo's contacts know the convex hull only: set"
+                " contact = 'explicit'"
+            )
 
     @property
     def hollow(self) -> frozenset[str]:
         """Names of the parts that are touched from within."""
-        return frozenset(thing.name for thing in self.things if isinstance(thing, Part) and thing.geometry.hollow)
+        parts = [thing for thing in self.things if isinstance(thing, Part)]
+        return frozenset(one.name for one in parts if not isinstance(one.geometry, MeshSurface) and one.geometry.hollow)
+
+    @property
+    def meshes(self) -> Mapping[str, SampledMesh]:
+        """Name of each part that is a mesh → its surface."""
+        parts = [thing for thing in self.things if isinstance(thing, Part)]
+        return {one.name: one.geometry.distance.samples for one in parts if isinstance(one.geometry, MeshSurface)}
 
     @property
     def faces(self) -> tuple[Plane | Part, ...]:
@@ -157,7 +172,7 @@ def fixed_part(
 
     Args:
         name: of the thing.
-        geometry: a plane, cylinder or sphere.
+        geometry: a plane, cylinder, sphere or mesh.
         surface: how it feels; None: the defaults of `Surface`.
         extent: m, half sizes of the part of a plane that is drawn; of a cylinder the first one along its axis.
 
@@ -169,10 +184,10 @@ def fixed_part(
             x, y, z = geometry.origin.tolist()
             n_x, n_y, n_z = geometry.rotation[:, 2].tolist()
             return Plane(name, (x, y, z), (n_x, n_y, n_z), surface or Surface(), extent, WOOD)
-        case CylinderSurface() | SphereSurface():
+        case CylinderSurface() | SphereSurface() | MeshSurface():
             return Part(name, geometry, surface or Surface(), extent[0])
         case _:
-            raise ConfigError(f"no contact law for a {type(geometry).__name__}; valid: plane, cylinder, sphere")
+            raise ConfigError(f"no contact law for a {type(geometry).__name__}; valid: plane, cylinder, sphere, mesh")
 
 
 def floor(height: float = 0.0, surface: Surface | None = None) -> Plane:

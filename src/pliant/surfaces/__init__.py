@@ -6,7 +6,8 @@ Plant, estimators, references and predictive controllers share these shapes; how
 
 from pliant.surfaces.cylinder import CylinderSurface
 from pliant.surfaces.geometry import Nearest, SurfaceGeometry
+from pliant.surfaces.mesh import MeshSurface
 from pliant.surfaces.plane import PlaneSurface
 from pliant.surfaces.sphere import SphereSurface
 
-__all__ = ["CylinderSurface", "Nearest", "PlaneSurface", "SphereSurface", "SurfaceGeometry"]
+__all__ = ["CylinderSurface", "MeshSurface", "Nearest", "PlaneSurface", "SphereSurface", "SurfaceGeometry"]

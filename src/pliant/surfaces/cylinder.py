@@ -56,6 +56,10 @@ class CylinderSurface(SurfaceGeometry):
         outward = up / length if length > 1e-6 else self.rotation[:, 0]
         return self.origin + self._side * self.radius * outward
 
+    def first_axis(self, normal: Array) -> Array:
+        """Along the axis."""
+        return self.rotation[:, 2]
+
     def chart(self, point: Array, along: Array, uv: Array) -> tuple[Array, Array]:
         place = self.near(point)
         axis, n = self.rotation[:, 2], place.normal

@@ -74,6 +74,16 @@ class SurfaceGeometry(ABC):
             `point` are exact; on a plane and a cylinder all lengths are.
         """
 
+    def first_axis(self, normal: Array) -> Array:
+        """(3,) unit vector along which patterns lie if nobody says: the surface's x axis, or its y axis where x stands
+        upright. Args: normal: (3,) of the place."""
+        return self.rotation[:, 1 if abs(float(self.rotation[:, 0] @ normal)) > 0.95 else 0]
+
+    @property
+    def described(self) -> str:
+        """What is to be known of how it is represented; empty for a closed form."""
+        return ""
+
     def normal(self, point: npt.ArrayLike) -> Array:
         """(3,) outward unit normal nearest to a point (3,) m."""
         return self.near(point).normal

@@ -105,6 +105,8 @@ def _beside(folder: Path, task: Task) -> Task:
     update: dict[str, Any] = {}
     if task.path.file is not None:
         update["path"] = task.path.model_copy(update={"file": str((folder / task.path.file).resolve())})
+    if task.surface.file is not None:
+        update["surface"] = task.surface.model_copy(update={"file": str((folder / task.surface.file).resolve())})
     if task.robot.endswith((".urdf", ".xml", ".mjcf")):
         update["robot"] = str((folder / Path(task.robot).expanduser()).resolve())
     return task.model_copy(update=update)

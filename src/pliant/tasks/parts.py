@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from pliant.configuration import Config, quantity
 from pliant.spatial import Array, rpy
-from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
+from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 from pliant.tasks.draws import Drawn
 
 Vector = tuple[float, float, float]
@@ -42,22 +42,42 @@ class Tool(Config):
 class Surface(Config):
     """The part, as the controller believes it. In its own axes: z is a plane's normal and a cylinder's axis."""
 
-    shape: Literal["plane", "cylinder", "sphere"] = Field(default="plane", description="plane, cylinder or sphere")
+    shape: Literal["plane", "cylinder", "sphere", "mesh"] = Field(
+        default="plane", description="plane, cylinder, sphere or mesh"
+    )
     pose: Pose | None = Field(
         default=None, description="of its own frame in the world; none: in front of the robot, where it reaches well"
     )
     tilt: float = quantity(0.0, "deg", "turned about the world's y axis where no pose is given", ge=-180.0, le=180.0)
     radius: float = quantity(0.15, "m", "of a cylinder or a sphere", gt=0.0, le=10.0)
     hollow: bool = Field(default=False, description="of a cylinder or a sphere: the inner wall")
+    file: str | None = Field(default=None, description="of a mesh: STL, OBJ or PLY; beside the task")
+    scale: float = quantity(1.0, "1", "of a mesh: m per unit of its file, 0.001 for millimetres", gt=0.0, le=1e3)
+    outside: Vector | None = quantity(
+        None, "1", "of a mesh that is not closed: a direction out of the material, in its own axes"
+    )
+    grid: float | None = quantity(
+        None, "m", "of a mesh: between two samples of its distance; none: as 500 000 of them allow", gt=0.0, le=0.1
+    )
     stiffness: float = quantity(2e4, "N/m", "of the contact", gt=0.0, le=1e7)
     damping: float = quantity(1e2, "N·s/m", "of the contact", ge=0.0, le=1e5)
     friction: float = quantity(0.25, "1", "Coulomb coefficient", ge=0.0, le=5.0)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Surface:
+        if (self.shape == "mesh") != (self.file is not None):
+            raise ValueError("surface.file and surface.shape = 'mesh' go together")
+        return self
 
     def geometry(self, pose: Pose) -> SurfaceGeometry:
         """The surface in a pose, its own or another."""
         place = np.array(pose.xyz)
         if self.shape == "plane":
             return PlaneSurface(place, pose.rotation)
+        if self.file is not None:
+            return MeshSurface.read(
+                self.file, place, pose.rotation, scale=self.scale, outside=self.outside, grid=self.grid
+            )
         kind = CylinderSurface if self.shape == "cylinder" else SphereSurface
         return kind(place, pose.rotation, self.radius, self.hollow)
 

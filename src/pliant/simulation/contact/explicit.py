@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from pliant._contact import BRISTLE_SIZE, ContactLoop
+from pliant._contact import BRISTLE_SIZE, ContactLoop, SampledMesh
 from pliant.errors import ConfigError, RunFailedError
 from pliant.simulation.contact.material import ContactMaterial, require_stable_step
 from pliant.simulation.surface import Surface
@@ -24,13 +24,16 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True)
 class ContactPair:
-    """Two geoms that can touch: the first a sphere, capsule or box, the second a plane, box, sphere or cylinder."""
+    """Two geoms that can touch: the first a sphere, capsule or box, the second a plane, box, sphere, cylinder or the
+    frame of a mesh."""
 
     geom_a: str
     geom_b: str
     material: ContactMaterial
     hollow: bool = False
     """the material of the second, a sphere or a cylinder, is outside of it"""
+    mesh: SampledMesh | None = None
+    """the surface of the second, in its axes; None: its own shape"""
 
 
 @dataclass(slots=True)
@@ -124,12 +127,12 @@ class ExplicitContacts:
 
     def _add(self, loop: ContactLoop, geom_a: int, geom_b: int, pair: ContactPair) -> slice:
         try:
-            first, count = loop.add_pair(geom_a, geom_b, pair.material.row(), pair.hollow)
+            first, count = loop.add_pair(geom_a, geom_b, pair.material.row(), pair.hollow, pair.mesh)
         except ValueError as error:
             raise ConfigError(
                 f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule or box"
-                " against a plane, a box or the inside of a hollow sphere or cylinder, a sphere or capsule against the"
-                " outside of one"
+                " against a plane, a mesh, a box or the inside of a hollow sphere or cylinder, a sphere or capsule"
+                " against the outside of one"
             ) from error
         return slice(first, first + count)
 
@@ -149,6 +152,7 @@ def explicit_contacts(
     start: Array,
     pairs: Sequence[tuple[str, str, Surface]],
     hollow: Collection[str] = (),
+    meshes: Mapping[str, SampledMesh] | None = None,
 ) -> ExplicitContacts:
     """The contacts of a model, checked for the physics step they need.
 
@@ -157,6 +161,7 @@ def explicit_contacts(
         start: (n,) configuration of the robot, whose joints come first.
         pairs: two geoms and what they feel like to each other.
         hollow: geoms whose material is outside of them.
+        meshes: geoms that are the frame of a mesh → its surface.
 
     Raises:
         ConfigError: a pair of shapes without a law, or a physics step that is too long for a contact.
@@ -170,7 +175,7 @@ def explicit_contacts(
         inverse_mass += _inverse_mass(model, data, model.geom(b).id, presses=False)
         material = ContactMaterial.of(surface, inverse_mass)
         require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
-        made.append(ContactPair(a, b, material, b in hollow))
+        made.append(ContactPair(a, b, material, b in hollow, (meshes or {}).get(b)))
     return ExplicitContacts(model, made)
 
 

@@ -57,8 +57,13 @@ def default_pose(task: TaskParts, robot: Robot) -> Pose:
     """A place in front of the robot, turned by `surface.tilt` about the world's y axis: there the tool, upright on the
     surface, is farthest from joint limits and singularities, on the branch of home.
 
-    A cylinder lies across, along the y axis; its top, like a sphere's, is where a plane would be.
+    A cylinder lies across, along the y axis; its top, like a sphere's and a mesh's, is where a plane would be.
     """
+    if task.surface.shape == "mesh":
+        turned = task.surface.geometry(Pose(rpy=(0.0, task.surface.tilt, 0.0)))
+        top = turned.top()
+        at = good_place(robot, task.tool.frame, turned.normal(top), turned.curvatures(top)[0])
+        return Pose(xyz=_three(at - top), rpy=(0.0, task.surface.tilt, 0.0))
     tilt = math.radians(task.surface.tilt)
     normal = np.array([math.sin(tilt), 0.0, math.cos(tilt)])
     curvature = 0.0 if task.surface.shape == "plane" else (-1.0 if task.surface.hollow else 1.0) / task.surface.radius
@@ -191,10 +196,7 @@ def _check_length(path: Path) -> None:
 
 def _axes(task: TaskParts, surface: SurfaceGeometry, place: Array, normal: Array) -> tuple[Array, Array]:
     """u and v (3,) at a place: along a cylinder's axis or a plane's x axis, turned by `path.direction`."""
-    first = surface.rotation[:, 2 if task.surface.shape == "cylinder" else 0]
-    if task.surface.shape == "sphere" and abs(float(first @ normal)) > 0.95:
-        first = surface.rotation[:, 1]
-    along = exp3(math.radians(task.path.direction) * normal) @ surface.tangent(place, first)
+    along = exp3(math.radians(task.path.direction) * normal) @ surface.tangent(place, surface.first_axis(normal))
     return along, np.cross(normal, along)
 
 

@@ -15,6 +15,7 @@ from pliant.studies.task.measure import WORST, Signals, check_accept, measured, 
 from pliant.studies.task.task_study import TaskStudy
 from pliant.studies.task.tuning import Searched
 from pliant.studies.task.world import true_surface
+from pliant.tasks.parts import Pose
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -43,6 +44,9 @@ class PathStudy(TaskStudy):
     def searched(self, config: TaskCase) -> Searched:
         made = planned(config)
         return Searched(made.robot, config.believed(made.surface))
+
+    def about(self, config: TaskCase) -> str:
+        return config.surface.geometry(Pose()).described
 
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         return checked_path(config, drawn)

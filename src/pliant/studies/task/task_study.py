@@ -60,6 +60,10 @@ class TaskStudy(Study[TaskCase]):
     def searched(self, config: TaskCase) -> Searched:
         """What a search over the controller's parameters starts from."""
 
+    def about(self, config: TaskCase) -> str:
+        """What is to be known of how the part is represented; empty if there is nothing."""
+        return ""
+
     @abstractmethod
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         """Reach, limits, freedom, torque and speed along the whole task. Args: drawn: how many drawn worlds.
