@@ -14,8 +14,6 @@ from pliant.environment import Environment
 from pliant.errors import ConfigError, RunFailedError, ShapeError
 from pliant.guard import Fault, Guard, Watched
 from pliant.interfaces import Controller, Plant
-from pliant.mpc import ForceFeedbackMpc
-from pliant.mpc.plan import Plan, torque_from
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Measurement, Preview, Reference, TaskReference
 
@@ -267,14 +265,6 @@ def test_a_step_limit_does_not_believe_what_is_said_to_have_been_sent(sent: floa
         answer, state = limited.step(estimate, Reference(0.0), state)
         assert np.isfinite(answer.torque).all()
         assert (np.abs(answer.torque) <= robot.torque_limit).all()
-
-
-def test_a_plan_has_no_torque_for_a_time_before_it() -> None:
-    plan = Plan(1.0, np.zeros(6), np.arange(15.0).reshape(5, 3), np.zeros((3, 6)))
-    config = ForceFeedbackMpc()
-    assert torque_from(plan, 1.0, None, config) is not None
-    for back in (0.004, 0.3):
-        assert torque_from(plan, 1.0 - back, None, config) is None
 
 
 def test_a_command_may_be_as_large_as_the_limit() -> None:

@@ -1,4 +1,5 @@
 // Python face of the core; meaning, shapes and units are in src/pliant/_mpc.pyi.
+#include "binding/bind_step.hpp"
 #include "binding/chain_model.hpp"
 #include "binding/node.hpp"
 #include "binding/nodes.hpp"
@@ -11,6 +12,7 @@ NB_MODULE(_mpc, m) {
   binding::bind_nodes(m);
   binding::bind_node(m);
   binding::bind_solver(m);
+  binding::bind_step(m);
   m.def("instruction_set", &instruction_set);
   m.def("available_instruction_sets", &available_instruction_sets);
   m.def("use_instruction_set", &use_instruction_set, nanobind::arg("name"));

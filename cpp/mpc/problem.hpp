@@ -6,6 +6,7 @@ namespace pliant::mpc {
 
 constexpr int max_joints = 8;
 constexpr int max_contact = 6;
+constexpr int multipliers_per_node = max_joints + max_contact + 3;
 
 enum class Kind { force_feedback, classical, torque_feedback, free, naive_viscoelastic };
 enum class Axes { local, world, surface };
@@ -98,7 +99,12 @@ struct KernelTable {
   void (*reset)(Engine*);
   void (*quasi_static)(Engine*, const NodeData*, const double* x0);
   void (*solve)(Engine*, const NodeData*, const double* x0, const Limits&, Report&);
-  void (*get_feedback)(const Engine*, double* gain, double* forces);
+  void (*get_feedback)(const Engine*, double* gain, double* forces);  // either may be null
+  // Of the bounds, `multipliers_per_node` numbers for each of the N + 1 nodes; nothing where bounds are ignored.
+  void (*get_multipliers)(const Engine*, double* multipliers);
+  void (*set_multipliers)(Engine*, const double* multipliers);
+  void (*tool_path)(const Engine*, double* positions);  // (N+1, 3) of the plan [m]
+  void (*gravity)(const ChainData&, const double* q, double* torque);
   void (*mass_matrix)(const ChainData&, const double* q, double* M);
   void (*placement)(const ChainData&, bool contact, const double* q, double* R, double* p);
 };

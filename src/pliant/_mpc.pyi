@@ -8,7 +8,7 @@ weight, per component, and the terminal node's are not multiplied by dt. Wrong v
 rule, what was got).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -128,6 +128,8 @@ class Nodes:
     n = dof, m = contact_dim.
     """
 
+    def __init__(self, count: int, chain: Chain, model: Model) -> None:
+        """Nodes without costs or bounds, by themselves; those of a solver or a node belong to it."""
     @property
     def count(self) -> int: ...
     state_reference: NDArray[np.float64]  # (M, 2n) [rad, rad/s]
@@ -319,6 +321,147 @@ class Solver:
             max_iterations: SQP steps allowed.
             tolerance: KKT residual at which it stops.
             time_budget: [s] wall time after which no further iteration starts; None: no limit.
+        """
+
+Fault: TypeAlias = Literal[
+    "no_wrench",  # force feedback, and the estimate has no wrench of the contact frame
+    "no_disturbance",  # it is to be taken out, and the estimate has none
+    "no_task",  # neither a preview nor a task for the frame
+    "reference_not_finite",
+    "pulls",  # a desired force points into the surface: value [N] along the normal
+    "unknown_phase",  # a phase without costs
+    "no_phase_for_contact",  # a reference without phases, and no phase with (value 1) or without (0) contact
+]
+Refusal: TypeAlias = tuple[Fault, int, float, tuple[float, float, float]]  # fault, node, value, normal
+
+class ControllerState:
+    """What a predictive controller keeps between two steps. A copy is a state of its own; it can be pickled."""
+
+    @property
+    def time_of_next_solve(self) -> float: ...  # [s]
+    @property
+    def source(self) -> int: ...  # of the last torque: 0 plan, 1 old plan, 2 gravity and damping
+    @property
+    def failures(self) -> int: ...  # solves in a row that left no usable solution
+    @property
+    def force_shift(self) -> float: ...  # [N] of the force reference
+    @property
+    def channels(self) -> Mapping[str, float | NDArray[np.float64]]: ...  # of the last solve, for the log
+    @property
+    def nodes(self) -> Nodes: ...  # parameters of the last solve, a copy
+    @property
+    def contact(self) -> Nodes: ...  # of the prediction over the delay, one row, a copy
+    @property
+    def xs(self) -> NDArray[np.float64]: ...  # (N+1, nx) the solver's plan, a copy
+    @property
+    def us(self) -> NDArray[np.float64]: ...  # (N, n) likewise
+    @property
+    def commands(self) -> NDArray[np.float64]: ...  # (under_way + 1, n) [N·m] sent, the oldest first
+    def copy(self) -> ControllerState: ...
+
+class ControllerStep:
+    """A predictive controller between estimate and torque: one call, without the GIL, nothing taken from the heap.
+
+    Measured state, references along the horizon, prediction over the delay, environment, disturbance, force integral,
+    solve, plan and fallback, averaging. It keeps nothing from step to step: that is in `ControllerState`.
+    """
+
+    def __init__(
+        self,
+        chain: Chain,
+        model: Model,
+        nodes: Nodes,
+        phases: Sequence[tuple[str, bool, Nodes]],
+        *,
+        frame: str,
+        contact_frame: str,
+        dt: float,
+        period: float,
+        tick: float,
+        regularisation: float,
+        bounds: bool,
+        max_iterations: int,
+        tolerance: float,
+        time_budget: float | None,
+        deadline: float | None,
+        riccati: bool,
+        interpolation: float,
+        max_gap: float,
+        fallback_damping: float,
+        torque_limit: ArrayLike,
+        R_world_surface: ArrayLike,
+        stiffness_max: float,
+        reference_posture: bool,
+        task_velocity: bool,
+        named_phases: bool,
+        torque_bounds: bool,
+        disturbance: bool,
+        environment: bool,
+        force_integral: float,
+        force_shift_max: float,
+        under_way: int,
+        averaged: int,
+        late: int,
+        lead: float,
+    ) -> None:
+        """Takes all that stays the same during a run.
+
+        Args:
+            chain: robot.
+            model: which model.
+            nodes: (N+1) what the nodes hold before the first step: contact, bounds.
+            phases: name, whether it has contact, and (N+1) nodes with its weights.
+            frame: whose task is tracked.
+            contact_frame: whose wrench, contact and environment are read.
+            dt: [s] between two nodes.
+            period: [s] from solve to solve.
+            tick: [s] from command to command.
+            regularisation: as of `Solver`.
+            bounds: as of `Solver`.
+            max_iterations: as of `Solver.solve`.
+            tolerance: as of `Solver.solve`.
+            time_budget: as of `Solver.solve`.
+            deadline: [s] of wall time after which a solve counts as missed; None: it is not looked at.
+            riccati: between two solves the solver's own feedback, else the torque is held.
+            interpolation: ε of [FFMPC] eq. 15, for 'torque_feedback'.
+            max_gap: Σ|f(x, u) − x⁺| above which a solution is not used.
+            fallback_damping: [N·m·s/rad] when no plan is left.
+            torque_limit: (n,) [N·m].
+            R_world_surface: (3, 3) with axes 'surface', where the task has none of its own.
+            stiffness_max: [N/m] up to which an estimated stiffness is taken.
+            reference_posture: posture of the reference, where it has one, else of the start.
+            task_velocity: velocity costs about the task's velocity, else about zero.
+            named_phases: costs by the reference's phase, else by the contact that is felt.
+            torque_bounds: whether the limits are bounds of the problem.
+            disturbance: take `Estimate.disturbance` out of the torque.
+            environment: let `Estimate.environments` replace the stiffness.
+            force_integral: [1/s].
+            force_shift_max: [N].
+            under_way: periods between a reading and the effect of the command that answers to it.
+            averaged: torques in the mean that is sent.
+            late: periods by which averaging delays a torque.
+            lead: [s] from an estimate to the effect of the command that answers to it.
+
+        Raises:
+            ValueError: sizes that do not belong together.
+        """
+    def init(self, time: float, q: ArrayLike, v: ArrayLike, torque_sent: ArrayLike) -> ControllerState: ...
+    def step(
+        self, estimate: object, reference: object, state: ControllerState, out: NDArray[np.float64]
+    ) -> Refusal | None:
+        """Steps; `state` is changed in place.
+
+        Args:
+            estimate: an `Estimate`, of now.
+            reference: a `Reference`, of now; looked at only where a solve is due.
+            state: of this controller.
+            out: (3, n) written: torque, what the limits took away, disturbance, N·m.
+
+        Returns:
+            None, or why there is no answer; `out` is then not written.
+
+        Raises:
+            ValueError: an array of another shape, a reference that is no rotation, a state of another controller.
         """
 
 def instruction_set() -> Literal["sse2", "neon", "avx2", "avx512"]:

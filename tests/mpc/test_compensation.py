@@ -15,6 +15,7 @@ from pliant.experiments.config import merged
 from pliant.mpc import CONTROLLERS, Compensation, ForceFeedbackMpc, MpcController, OffsetFreeMpc
 from pliant.mpc.config import Bounds
 from pliant.signals import Estimate
+from pliant.mpc.twin.compensation import Compensator
 
 from .test_controller import ROBOT, _estimate, _reference
 
@@ -52,17 +53,21 @@ def test_a_disturbance_that_is_not_finite_keeps_the_last_one() -> None:
     np.testing.assert_array_equal(torques[0], torques[1])
 
 
+def compensator(**compensation: object) -> Compensator:
+    """The readable one, which the compiled step agrees with (`test_step.py`)."""
+    made = controller(**compensation)
+    return Compensator(made.config.compensation, made.problem, made.chain, PERIOD)
+
+
 def test_an_average_passes_a_constant_and_stops_what_rings() -> None:
     """The mean over 4 ms has zeros at 250 and 500 Hz; baseline: without it the ringing passes."""
-    made = controller(averaging=4e-3).compensator
-    bare = controller().compensator
     seen: dict[str, list[float]] = {"averaged": [], "bare": []}
     start = _estimate()
-    for name, compensator in (("averaged", made), ("bare", bare)):
-        state = compensator.init(start)
+    for name, part in (("averaged", compensator(averaging=4e-3)), ("bare", compensator())):
+        state = part.init(start)
         for tick in range(40):
             wanted = np.full(ROBOT.n, 5.0 + np.cos(0.5 * np.pi * tick))
-            sent, state = compensator.send(wanted, state)
+            sent, state = part.send(wanted, state)
             seen[name].append(float(sent[0]))
     np.testing.assert_allclose(seen["averaged"][8:], 5.0, atol=1e-12)
     assert np.ptp(seen["bare"][8:]) == pytest.approx(2.0)
@@ -83,21 +88,21 @@ def test_torques_under_way_are_kept_in_order() -> None:
     made = controller(sensing_delay=1e-3, computation_delay=2e-3)
     start = _estimate()
     state = made.init(replace(start, torque_sent=np.full(ROBOT.n, 7.0)))
-    assert len(state.compensation.commands) == 4  # three under way, and the one that acted at the reading
-    np.testing.assert_array_equal(state.compensation.commands[0], 7.0)
+    assert len(state.commands) == 4  # three under way, and the one that acted at the reading
+    np.testing.assert_array_equal(state.commands[0], 7.0)
     sent = []
     for tick in range(6):
         command, state = made.step(_estimate(PERIOD * tick), _reference(PERIOD * tick, offset=0.02 * tick), state)
         sent.append(command.torque)
-    for kept, was in zip(state.compensation.commands, sent[-4:], strict=True):
+    for kept, was in zip(state.commands, sent[-4:], strict=True):
         np.testing.assert_array_equal(kept, was)
 
 
 def test_the_lead_is_the_delay_and_half_the_average() -> None:
-    assert controller().compensator.lead == 0.0
-    assert controller(sensing_delay=1e-3).compensator.lead == 0.0  # readings are late, commands are not
-    assert controller(computation_delay=5e-3).compensator.lead == pytest.approx(5e-3)
-    assert controller(computation_delay=5e-3, averaging=4e-3).compensator.lead == pytest.approx(7e-3)
+    assert controller().delays.lead == 0.0
+    assert controller(sensing_delay=1e-3).delays.lead == 0.0  # readings are late, commands are not
+    assert controller(computation_delay=5e-3).delays.lead == pytest.approx(5e-3)
+    assert controller(computation_delay=5e-3, averaging=4e-3).delays.lead == pytest.approx(7e-3)
 
 
 def test_the_force_shift_integrates_in_contact_only() -> None:
@@ -120,7 +125,7 @@ def test_the_estimated_stiffness_replaces_the_assumed_one_within_its_range() -> 
     state = made.init(_estimate())
     _, state = made.step(believing(_estimate(), environments=believed), _reference(), state)
     assert (state.nodes.stiffness == 5e3).all()
-    assert (made.compensator.contact.stiffness == 5e3).all()
+    assert (state.contact.stiffness == 5e3).all()
     stiff = {"tool": Environment(1e9, 100.0, 10.0, 10.0)}
     _, state = made.step(believing(_estimate(2e-3), environments=stiff), _reference(2e-3), state)
     assert (state.nodes.stiffness == made.problem.stiffness_max).all()
@@ -148,7 +153,7 @@ def test_bad_input_is_named() -> None:
 
 def test_the_prediction_takes_the_oldest_torques_first_and_averages_the_newest() -> None:
     """What is under way acts in its order; beyond it, means of the last wanted torques with the newest repeated."""
-    made = controller(averaging=3e-3).compensator
+    made = compensator(averaging=3e-3)
     seen: list[tuple[list[np.ndarray], np.ndarray]] = []
 
     class Spy:

@@ -90,7 +90,7 @@ def test_torque_feedback_sends_the_filtered_torque() -> None:
     controller = MpcController(ROBOT, TorqueFeedbackMpc())
     state = controller.init(_estimate())
     command, state = controller.step(_estimate(), _reference(offset=0.02), state)
-    xs, us = state.solver.xs, state.solver.us
+    xs, us = state.xs, state.us
     tau_0, tau_1 = xs[0, 12:], xs[1, 12:]
     np.testing.assert_allclose(command.torque, tau_0 + 2.0 / 3.0 * (tau_1 - tau_0))
     assert np.linalg.norm(us[0] - tau_0) > 1.2 * np.linalg.norm(command.torque - tau_0)
@@ -113,7 +113,7 @@ def test_without_a_solution_it_follows_the_plan_then_holds_with_damping() -> Non
     controller = MpcController(ROBOT, ForceFeedbackMpc())
     estimate = replace(_estimate(), v=np.full(6, 0.1))
     _, state = controller.step(estimate, _reference(offset=0.02), controller.init(estimate))
-    plan = state.solver.us
+    plan = state.us
     sources = []
     for tick in range(1, 25):
         blind = replace(_estimate(1e-3 * tick), q=np.full(6, np.nan))
@@ -128,6 +128,16 @@ def test_without_a_solution_it_follows_the_plan_then_holds_with_damping() -> Non
     np.testing.assert_allclose(command.torque, _gravity(ROBOT.home) - 5.0 * 0.1)
     command, state = controller.step(_estimate(0.030), _reference(0.030), state)
     assert command.diagnostics["mpc/source"] == SOURCE_CODES["plan"]
+
+
+def test_a_plan_has_no_torque_for_a_time_before_it() -> None:
+    """Baseline: for a time after its start it has one."""
+    controller = MpcController(ROBOT, ForceFeedbackMpc())
+    for shift, source in ((0.002, "old plan"), (-0.004, "gravity and damping"), (-0.3, "gravity and damping")):
+        _, state = controller.step(_estimate(1.0), _reference(1.0, 0.02), controller.init(_estimate(1.0)))
+        blind = replace(_estimate(1.0 + shift), v=np.full(6, np.nan))
+        command, _ = controller.step(blind, _reference(1.0 + shift, 0.02), state)
+        assert command.diagnostics["mpc/source"] == SOURCE_CODES[source]
 
 
 @pytest.mark.parametrize("what", ["q", "v", "torque", "wrenches"])
@@ -201,6 +211,6 @@ def test_torque_bounds_are_planned_with_instead_of_clamped() -> None:
         taken[bounded] = float(np.max(np.abs(command.clamped)))
         assert np.all(np.abs(command.torque) <= limit)
         if bounded:
-            assert np.max(np.abs(state.solver.us) - limit) < 1e-3
+            assert np.max(np.abs(state.us) - limit) < 1e-3
     assert taken[True] < 1e-3
     assert taken[False] > 1.0

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from pliant.errors import ConfigError, SignalError
-from pliant.mpc.horizon import HorizonReference, along_horizon, require_pushing
+from pliant.mpc.horizon import HorizonReference
 from pliant.signals import Preview, Reference, TaskReference
+from pliant.mpc.twin.horizon import along_horizon, require_pushing
 
 
 def _preview(step: float, count: int) -> Preview:

@@ -95,6 +95,13 @@ inline void bind_nodes(nb::module_& m) {
   const Shape six = [](const PyNodes&) { return std::vector<size_t>{6}; };
   const Shape rotation = [](const PyNodes&) { return std::vector<size_t>{3, 3}; };
   nb::class_<PyNodes> c(m, "Nodes");
+  c.def(
+      "__init__",
+      [](PyNodes* self, int count, const PyChain& chain, const PyModel& model) {
+        if (count < 1) throw std::invalid_argument("nodes must be one or more, got " + std::to_string(count));
+        new (self) PyNodes(count, chain.data.dof, model.data);
+      },
+      "count"_a, "chain"_a, "model"_a);
   def_array(c, "state_reference", &NodeData::state_reference, state);
   def_array(c, "state_weight", &NodeData::state_weight, state);
   def_array(c, "control_reference", &NodeData::control_reference, joints);

@@ -1,20 +1,10 @@
 // One instruction-set copy of the core. Compiled several times, each with its own PLIANT_ISA and compiler flags; the
 // only symbol that leaves it is select_kernel().
 #include "../kernels.hpp"
-#include "dense.hpp"
-#include "sqp.hpp"
+#include "plan.hpp"
 
 namespace pliant::mpc::PLIANT_ISA {
 namespace {
-
-template <class L>
-Solver<L>& solver(Engine* engine) {
-  return *reinterpret_cast<Solver<L>*>(engine);
-}
-template <class L>
-const Solver<L>& solver(const Engine* engine) {
-  return *reinterpret_cast<const Solver<L>*>(engine);
-}
 
 template <class L>
 void destroy(Engine* engine) {
@@ -85,41 +75,6 @@ void freeze(Engine* engine, const double* task_rotation, const double* q) {
   s.freeze(mat(task_rotation), load_part(q, s.chain.dof, 1));
 }
 
-// Plan -------------------------------------------------------------------------------------------------------------
-
-template <class L>
-void set_plan(Engine* engine, const double* xs, const double* us) {
-  Solver<L>& s = solver<L>(engine);
-  const int N = s.options.horizon, n = s.chain.dof, nx = s.map.dim();
-  for (int k = 0; xs && k <= N; ++k) s.current().x[k] = s.map.pack(xs + k * nx);
-  for (int k = 0; us && k < N; ++k) s.current().u[k] = load_part(us + k * n, n, 1);
-}
-
-template <class L>
-void get_plan(const Engine* engine, double* xs, double* us) {
-  const Solver<L>& s = solver<L>(engine);
-  const Dense<L> dense(s.map);
-  const int N = s.options.horizon;
-  for (int k = 0; xs && k <= N; ++k) dense.state_row(s.current().x[k], xs + k * dense.nx);
-  for (int k = 0; us && k < N; ++k) dense.joint_row(s.current().u[k], us + k * dense.n);
-}
-
-template <class L>
-void shift(Engine* engine) {
-  Solver<L>& s = solver<L>(engine);
-  const int N = s.options.horizon;
-  Iterate<L>& it = s.current();
-  for (int k = 0; k < N; ++k) it.x[k] = it.x[k + 1];
-  for (int k = 0; k + 1 < N; ++k) it.u[k] = it.u[k + 1];
-  for (int k = 0; s.options.bounds && k < N; ++k) s.multipliers[k] = s.multipliers[k + 1];
-}
-
-template <class L>
-void reset(Engine* engine) {
-  Solver<L>& s = solver<L>(engine);
-  for (int k = 0; k < s.multipliers.count; ++k) s.multipliers[k] = BoundVector{};
-}
-
 template <class L>
 void quasi_static(Engine* engine, const NodeData* nodes, const double* x0) {
   Solver<L>& s = solver<L>(engine);
@@ -147,7 +102,7 @@ void get_feedback(const Engine* engine, double* gain, double* forces) {
   const Solver<L>& s = solver<L>(engine);
   const Dense<L> dense(s.map);
   const StageFactor<L>& f = s.factors[0];
-  for (int k = 0; k < dense.nx; ++k) {  // R⁻ᵀ Y, column by column
+  for (int k = 0; gain && k < dense.nx; ++k) {  // R⁻ᵀ Y, column by column
     double column[lane_count] = {};
     for (int i = L::J - 1; i >= 0; --i) {
       double t = f.Y[i][s.map.lane(k)];
@@ -157,13 +112,20 @@ void get_feedback(const Engine* engine, double* gain, double* forces) {
     for (int i = 0; i < dense.n; ++i) gain[i * dense.nx + k] = column[i];
   }
   const int dim = s.model.data.contact_dim;
-  for (int k = 0; k < s.options.horizon; ++k)
+  for (int k = 0; forces && k < s.options.horizon; ++k)
     for (int c = 0; c < dim; ++c) forces[k * dim + c] = s.current().node[k].force[c];
 }
 
 template <int J>
 void make_rest_of(const ChainData& data, const double* q, Rest<J>& rest) {
   make_rest<J>(make_chain(data, J), ModelData{}, Mat{}, load_part(q, data.dof, 1), rest);
+}
+
+template <int J>
+void gravity_of(const ChainData& data, const double* q, double* torque) {
+  Rest<J> rest;
+  make_rest_of<J>(data, q, rest);
+  for (int i = 0; i < data.dof; ++i) torque[i] = rest.gravity_torque[i];
 }
 
 template <int J>
@@ -203,6 +165,10 @@ const KernelTable* table() {
                                     quasi_static<L>,
                                     solve<L>,
                                     get_feedback<L>,
+                                    get_multipliers<L>,
+                                    set_multipliers<L>,
+                                    tool_path<L>,
+                                    gravity_of<L::J>,
                                     mass_matrix_of<L::J>,
                                     placement<L::J>};
   return &t;

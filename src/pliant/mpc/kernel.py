@@ -1,8 +1,11 @@
-"""The compiled model and solver of a problem."""
+"""The compiled model, solver and step of a problem."""
 
 from __future__ import annotations
 
+import numpy as np
+
 from pliant import _mpc
+from pliant.mpc.compensation import Delays
 from pliant.mpc.config import Kind
 from pliant.mpc.problem import MpcProblem
 
@@ -25,4 +28,51 @@ def kernel_solver(problem: MpcProblem, chain: _mpc.Chain, model: _mpc.Model) -> 
     config = problem.config
     return _mpc.Solver(
         chain, model, config.horizon, config.dt, regularisation=config.regularisation, bounds=config.bounds.any
+    )
+
+
+def kernel_step(problem: MpcProblem, chain: _mpc.Chain, delays: Delays, tick: float) -> _mpc.ControllerStep:
+    """The compiled step of a controller that sends a command every `tick` s."""
+    config, model, phases = problem.config, kernel_model(problem), problem.config.phases
+    compensation, count = config.compensation, config.horizon + 1
+    constants = _mpc.Nodes(count, chain, model)
+    problem.write_constants(constants)
+    rows = {name: _mpc.Nodes(count, chain, model) for name in phases}
+    for name, nodes in rows.items():
+        problem.write_phases(nodes, (name,) * count)
+    return _mpc.ControllerStep(
+        chain,
+        model,
+        constants,
+        [(name, phases[name].contact, nodes) for name, nodes in rows.items()],
+        frame=config.frame,
+        contact_frame=problem.contact_frame,
+        dt=config.dt,
+        period=config.period,
+        tick=tick,
+        regularisation=config.regularisation,
+        bounds=config.bounds.any,
+        max_iterations=config.max_iterations,
+        tolerance=config.tolerance,
+        time_budget=config.time_budget,
+        deadline=config.deadline,
+        riccati=config.between == "riccati",
+        interpolation=min(config.period / config.dt, 1.0),
+        max_gap=config.max_gap,
+        fallback_damping=config.fallback_damping,
+        torque_limit=np.array(problem.torque_limit),
+        R_world_surface=problem.R_world_surface,
+        stiffness_max=problem.stiffness_max,
+        reference_posture=config.posture == "reference",
+        task_velocity=config.task_velocity,
+        named_phases=config.phase_by == "name",
+        torque_bounds=config.bounds.torque,
+        disturbance=compensation.disturbance,
+        environment=compensation.environment,
+        force_integral=compensation.force_integral,
+        force_shift_max=compensation.force_shift_max,
+        under_way=delays.under_way,
+        averaged=delays.averaged,
+        late=delays.late,
+        lead=delays.lead,
     )

@@ -1,0 +1,197 @@
+// Signals of src/pliant/signals.py as the flat structs of a step: their arrays are read where they lie.
+#pragma once
+#include <array>
+
+#include "../step/data.hpp"
+#include "arrays.hpp"
+
+namespace pliant::mpc::binding {
+
+// Names of attributes, made once; reading an attribute by a C string would make a string each time.
+struct Names {
+  PyObject* contacts = PyUnicode_InternFromString("contacts");
+  PyObject* disturbance = PyUnicode_InternFromString("disturbance");
+  PyObject* environments = PyUnicode_InternFromString("environments");
+  PyObject* frame = PyUnicode_InternFromString("frame");
+  PyObject* phase = PyUnicode_InternFromString("phase");
+  PyObject* position = PyUnicode_InternFromString("position");
+  PyObject* posture = PyUnicode_InternFromString("posture");
+  PyObject* preview = PyUnicode_InternFromString("preview");
+  PyObject* q = PyUnicode_InternFromString("q");
+  PyObject* rotation = PyUnicode_InternFromString("rotation");
+  PyObject* stiffness = PyUnicode_InternFromString("stiffness");
+  PyObject* task_rotation = PyUnicode_InternFromString("task_rotation");
+  PyObject* tasks = PyUnicode_InternFromString("tasks");
+  PyObject* time = PyUnicode_InternFromString("time");
+  PyObject* torque = PyUnicode_InternFromString("torque");
+  PyObject* v = PyUnicode_InternFromString("v");
+  PyObject* velocity = PyUnicode_InternFromString("velocity");
+  PyObject* wrench = PyUnicode_InternFromString("wrench");
+  PyObject* wrenches = PyUnicode_InternFromString("wrenches");
+};
+inline const Names& names() {
+  static const Names found;
+  return found;
+}
+inline nb::object read_attribute(nb::handle from, PyObject* name) {
+  PyObject* value = PyObject_GetAttr(from.ptr(), name);
+  if (!value) throw nb::python_error();
+  return nb::steal(value);
+}
+
+// Numbers of somebody's array, kept alive while they are read; copied only where they do not lie side by side in rows
+// or are no float64.
+class Numbers {
+ public:
+  Numbers() = default;
+  Numbers(const Numbers&) = delete;
+  Numbers& operator=(const Numbers&) = delete;
+  ~Numbers() {
+    if (held_) PyBuffer_Release(&buffer_);
+  }
+
+  // Reads an array of the given shape; a first axis of -1 takes any length.
+  step::Rows read(nb::handle value, const char* name, std::initializer_list<long> shape) {
+    if (held_) PyBuffer_Release(&buffer_);
+    held_ = PyObject_GetBuffer(value.ptr(), &buffer_, PyBUF_STRIDED_RO | PyBUF_FORMAT) == 0;
+    if (!held_ || !in_rows()) {
+      PyErr_Clear();
+      if (held_) PyBuffer_Release(&buffer_);
+      held_ = false;
+      converted_ = nb::module_::import_("numpy").attr("ascontiguousarray")(value, "dtype"_a = "float64");
+      if (PyObject_GetBuffer(converted_.ptr(), &buffer_, PyBUF_STRIDED_RO | PyBUF_FORMAT)) throw nb::python_error();
+      held_ = true;
+    }
+    check(name, shape);
+    return {static_cast<const double*>(buffer_.buf), buffer_.ndim > 1 ? long(buffer_.strides[0] / 8) : 1};
+  }
+  const double* vector(nb::handle value, const char* name, long size) { return read(value, name, {size}).data; }
+  int rows() const { return int(buffer_.shape[0]); }
+
+ private:
+  Py_buffer buffer_{};
+  bool held_ = false;
+  nb::object converted_;
+
+  // float64 whose axes but the first are packed; a vector of one axis is packed itself.
+  bool in_rows() const {
+    if (buffer_.itemsize != 8 || !buffer_.format || std::strcmp(buffer_.format, "d") != 0) return false;
+    Py_ssize_t packed = 8;
+    for (int axis = buffer_.ndim - 1; axis > (buffer_.ndim > 1 ? 0 : -1); --axis) {
+      if (buffer_.strides[axis] != packed && buffer_.shape[axis] > 1) return false;
+      packed *= buffer_.shape[axis];
+    }
+    return buffer_.ndim < 1 || buffer_.strides[0] % 8 == 0;
+  }
+  void check(const char* name, std::initializer_list<long> shape) const {
+    std::vector<size_t> got, wanted;
+    bool same = size_t(buffer_.ndim) == shape.size();
+    int axis = 0;
+    for (const long size : shape) {
+      if (axis < buffer_.ndim) same = same && (size < 0 || buffer_.shape[axis] == size);
+      wanted.push_back(size_t(size < 0 && axis < buffer_.ndim ? buffer_.shape[axis] : size));
+      ++axis;
+    }
+    if (same) return;
+    for (int i = 0; i < buffer_.ndim; ++i) got.push_back(size_t(buffer_.shape[i]));
+    throw std::invalid_argument(std::string(name) + " must have shape " + shape_text(wanted) + ", got " +
+                                shape_text(got));
+  }
+};
+
+// A mapping's value, or nothing.
+inline nb::object found_in(nb::handle mapping, nb::handle key) {
+  if (PyDict_CheckExact(mapping.ptr())) return nb::borrow(PyDict_GetItemWithError(mapping.ptr(), key.ptr()));
+  const nb::object value = mapping.attr("get")(key);
+  return value.is_none() ? nb::object() : value;
+}
+
+inline bool same_text(nb::handle a, nb::handle b) {
+  if (a.is(b)) return true;
+  return PyUnicode_Check(a.ptr()) && PyUnicode_Check(b.ptr()) && PyUnicode_Compare(a.ptr(), b.ptr()) == 0;
+}
+
+// An estimate, as a controller with this contact frame reads it.
+class ReadEstimate {
+ public:
+  step::Estimated data{};
+
+  ReadEstimate(nb::handle estimate, nb::handle frame, long n, bool torque, bool disturbance, bool environment) {
+    data.time = nb::cast<double>(read_attribute(estimate, names().time));
+    data.q = numbers_[0].vector(read_attribute(estimate, names().q), "the estimate's q", n);
+    data.v = numbers_[1].vector(read_attribute(estimate, names().v), "the estimate's v", n);
+    if (torque) data.torque = numbers_[2].vector(read_attribute(estimate, names().torque), "the estimate's torque", n);
+    if (const nb::object wrench = found_in(read_attribute(estimate, names().wrenches), frame); wrench.is_valid())
+      data.wrench = numbers_[3].vector(wrench, "the estimate's wrench", 6);
+    if (disturbance)
+      if (const nb::object d = read_attribute(estimate, names().disturbance); !d.is_none())
+        data.disturbance = numbers_[4].vector(d, "the estimate's disturbance", n);
+    const nb::object contact = found_in(read_attribute(estimate, names().contacts), frame);
+    data.contact = contact.is_valid() ? PyObject_IsTrue(contact.ptr()) : -1;
+    data.stiffness = -1;
+    if (!environment) return;
+    if (const nb::object known = found_in(read_attribute(estimate, names().environments), frame); known.is_valid())
+      data.stiffness = nb::cast<double>(read_attribute(known, names().stiffness));
+  }
+
+ private:
+  std::array<Numbers, 5> numbers_;
+};
+
+// A task's reference.
+class ReadTask {
+ public:
+  step::Task data{};
+
+  explicit ReadTask(nb::handle task) {
+    data.position = numbers_[0].vector(read_attribute(task, names().position), "the reference's position", 3);
+    data.velocity = numbers_[1].vector(read_attribute(task, names().velocity), "the reference's velocity", 6);
+    data.wrench = numbers_[2].vector(read_attribute(task, names().wrench), "the reference's wrench", 6);
+    data.rotation = matrix(read_attribute(task, names().rotation), 3, "the reference's rotation");
+    data.task_rotation = matrix(read_attribute(task, names().task_rotation), 4, "the reference's task_rotation");
+  }
+
+ private:
+  std::array<Numbers, 5> numbers_;
+
+  const double* matrix(nb::handle value, size_t slot, const char* name) {
+    if (value.is_none()) return nullptr;
+    const step::Rows rows = numbers_[slot].read(value, name, {3, 3});
+    if (rows.stride == 3) return rows.data;
+    for (int i = 0; i < 3; ++i) std::memcpy(packed_[slot - 3] + 3 * i, rows.row(i), 3 * sizeof(double));
+    return packed_[slot - 3];
+  }
+  double packed_[2][9];
+};
+
+// A preview; `phase_of` turns a name into an index.
+class ReadPreview {
+ public:
+  template <class PhaseOf>
+  void read(nb::handle preview, long n, PhaseOf phase_of, step::Ahead& ahead) {
+    ahead.time = numbers_[0].read(read_attribute(preview, names().time), "the preview's time", {-1});
+    const long count = numbers_[0].rows();
+    if (count < 1) throw std::invalid_argument("a preview must have at least one instant, got none");
+    ahead.count = int(count);
+    ahead.position = numbers_[1].read(read_attribute(preview, names().position), "the preview's position", {count, 3});
+    ahead.rotation =
+        numbers_[2].read(read_attribute(preview, names().rotation), "the preview's rotation", {count, 3, 3});
+    ahead.velocity = numbers_[3].read(read_attribute(preview, names().velocity), "the preview's velocity", {count, 6});
+    ahead.wrench = numbers_[4].read(read_attribute(preview, names().wrench), "the preview's wrench", {count, 6});
+    ahead.posture = ahead.task_rotation = {};
+    if (const nb::object posture = read_attribute(preview, names().posture); !posture.is_none())
+      ahead.posture = numbers_[5].read(posture, "the preview's posture", {count, n});
+    if (const nb::object axes = read_attribute(preview, names().task_rotation); !axes.is_none())
+      ahead.task_rotation = numbers_[6].read(axes, "the preview's task_rotation", {count, 3, 3});
+    ahead.phase.clear();
+    for (nb::handle name : read_attribute(preview, names().phase)) ahead.phase.push_back(phase_of(name));
+    if (!ahead.phase.empty() && long(ahead.phase.size()) != count)
+      throw std::invalid_argument("a preview must have a phase for each of its " + std::to_string(count) +
+                                  " instants, got " + std::to_string(ahead.phase.size()));
+  }
+
+ private:
+  std::array<Numbers, 7> numbers_;
+};
+
+}  // namespace pliant::mpc::binding
