@@ -25,9 +25,9 @@ from pliant.mpc import (
     OffsetFreeMpc,
     TorqueFeedbackMpc,
 )
+from pliant.mpc.twin.controller import TwinController
 from pliant.signals import Command, Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array, exp3
-from pliant.mpc.twin.controller import TwinController
 
 from .problems import polishing_arm
 
@@ -64,7 +64,7 @@ def preview(rng: np.random.Generator, time: float, phases: tuple[str, ...], step
     return Preview(
         time=times,
         position=POSITION + 0.01 * rng.normal(size=(count, 3)),
-        rotation=turns,
+        rotation=turns if rng.random() < 0.8 else None,
         velocity=0.1 * rng.normal(size=(count, 6)),
         wrench=np.abs(rng.normal(size=(count, 1))) * np.array([0.0, 0.0, 20.0, 0.0, 0.0, 0.0]),
         phase=phases,

@@ -174,11 +174,11 @@ class ReadPreview {
     if (count < 1) throw std::invalid_argument("a preview must have at least one instant, got none");
     ahead.count = int(count);
     ahead.position = numbers_[1].read(read_attribute(preview, names().position), "the preview's position", {count, 3});
-    ahead.rotation =
-        numbers_[2].read(read_attribute(preview, names().rotation), "the preview's rotation", {count, 3, 3});
     ahead.velocity = numbers_[3].read(read_attribute(preview, names().velocity), "the preview's velocity", {count, 6});
     ahead.wrench = numbers_[4].read(read_attribute(preview, names().wrench), "the preview's wrench", {count, 6});
-    ahead.posture = ahead.task_rotation = {};
+    ahead.rotation = ahead.posture = ahead.task_rotation = {};
+    if (const nb::object turns = read_attribute(preview, names().rotation); !turns.is_none())
+      ahead.rotation = numbers_[2].read(turns, "the preview's rotation", {count, 3, 3});
     if (const nb::object posture = read_attribute(preview, names().posture); !posture.is_none())
       ahead.posture = numbers_[5].read(posture, "the preview's posture", {count, n});
     if (const nb::object axes = read_attribute(preview, names().task_rotation); !axes.is_none())

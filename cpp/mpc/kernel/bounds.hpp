@@ -88,7 +88,7 @@ struct alignas(64) BoundTerms {
 PLIANT_INLINE void bound_terms(const StageBounds& b, const BoundVector& y, const Lanes& torque, const double* force,
                                BoundTerms& t) {
   t.torque_at = torque;
-  t.gradient.torque = zero();
+  t.gradient = BoundVector{};  // a bound that is not there has no multiplier, whatever it had when it was
   t.torque_active = zero();
   if (b.torque) {
     const Lanes v = torque + y.torque * (1 / penalty);

@@ -33,7 +33,7 @@ constexpr int unnamed_phase = -1, unknown_phase = -2;
 // The reference at later instants.
 struct Ahead {
   int count = 0;
-  Rows time, position, rotation, velocity, wrench, posture, task_rotation;  // the last two may be absent
+  Rows time, position, rotation, velocity, wrench, posture, task_rotation;  // rotation and the last two may be absent
   std::vector<int> phase;  // of each row: index among the phases, or unnamed; empty: all unnamed
 };
 

@@ -53,7 +53,7 @@ void sample(const Settings& s, const Wanted& w, Horizon& horizon) {
     between(ahead.velocity, at, after, share, 6, node.velocity);
     between(ahead.wrench, at, after, share, 6, node.wrench);
     if (horizon.postured) between(ahead.posture, at, after, share, s.n(), node.posture);
-    copy(node.rotation, ahead.rotation.row(at), 9);
+    if (horizon.oriented) copy(node.rotation, ahead.rotation.row(at), 9);
     if (horizon.turning) copy(node.task_rotation, ahead.task_rotation.row(at), 9);
     node.phase = ahead.phase.empty() ? unnamed_phase : ahead.phase[size_t(at)];
   }
@@ -77,7 +77,7 @@ void extrapolate(const Settings& s, const Wanted& w, Horizon& horizon) {
 
 Fault along_horizon(const Settings& s, const Wanted& w, Horizon& horizon) {
   if (w.has_ahead) {
-    horizon.oriented = true;
+    horizon.oriented = w.ahead->rotation.data;
     horizon.turning = w.ahead->task_rotation.data;
     horizon.postured = w.ahead->posture.data;
     sample(s, w, horizon);

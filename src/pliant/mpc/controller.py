@@ -24,7 +24,6 @@ from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
 
-
 if TYPE_CHECKING:
     from pliant._mpc import ControllerState as MpcState
 else:

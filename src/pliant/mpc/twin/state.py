@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import pinocchio as pin
 
 from pliant import _mpc
-from pliant.spatial import Array
 from pliant.mpc.twin.compensation import CompensationState
 from pliant.mpc.twin.plan import Plan
+from pliant.spatial import Array
 
 
 @dataclass(slots=True)
