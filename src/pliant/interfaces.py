@@ -16,6 +16,9 @@ from pliant.spatial import Array
 
 State = TypeVar("State")
 
+CLOCK_ROUNDING = 1e-9
+"""s; smaller than any period, larger than the rounding of a clock"""
+
 Compensation = Literal["none", "gravity", "gravity+coriolis"]
 """what a robot's own controller adds, invisibly, to the torque that is sent"""
 
@@ -46,6 +49,14 @@ class Lookahead:
     """s between them"""
     lead: float = 0.0
     """s from now to the first of them: commands that take effect later want later references"""
+    every: float = 0.0
+    """s between two looks, the first in the first tick; in between a source may leave the preview out. 0: in every
+    tick"""
+
+    def due(self, time: float, next_look: float) -> bool:
+        """Whether a look falls on a time in s, when the next one was expected at `next_look`."""
+        turned_back = time < next_look - self.every - CLOCK_ROUNDING
+        return turned_back or time >= next_look - CLOCK_ROUNDING
 
 
 @dataclass(frozen=True)

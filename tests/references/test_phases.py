@@ -89,6 +89,33 @@ def test_each_node_of_the_preview_has_the_phase_of_its_time() -> None:
     assert set(unknown.phase) == {"track"}
 
 
+@pytest.mark.parametrize("period", [1e-3, 0.7e-3])
+def test_a_preview_that_is_looked_at_now_and_then_is_made_then(period: float) -> None:
+    """It is the one of a source that makes it in every tick; baseline: that one has one in every tick."""
+    always = _source(found=True, lookahead=Lookahead(5, 0.003, 0.002))
+    rarely = _source(found=True, lookahead=Lookahead(5, 0.003, 0.002, every=0.002))
+    states, looks = [source.init(_estimate(0.0)) for source in (always, rarely)], []
+    times = [period * tick for tick in range(200)] + [0.05 + period * tick for tick in range(5)]  # the clock goes back
+    for time in times:
+        estimate = _estimate(time, time > 0.08)
+        (whole, states[0]), (part, states[1]) = (
+            source.step(estimate, state) for source, state in zip((always, rarely), states, strict=True)
+        )
+        assert whole.preview is not None
+        np.testing.assert_array_equal(whole.tasks[0].position, part.tasks[0].position)
+        if part.preview is not None:
+            looks.append(time)
+            np.testing.assert_array_equal(part.preview.position, whole.preview.position)
+            np.testing.assert_array_equal(part.preview.wrench, whole.preview.wrench)
+            assert part.preview.phase == whole.preview.phase
+    assert looks[0] == 0.0
+    late = np.diff(looks[:-5])
+    assert (late >= 0.002 - 1e-9).all()
+    assert (late < 0.002 + period).all()
+    assert times[200] in looks  # where the clock went back
+    assert len(looks) < 0.6 * len(times)
+
+
 def test_wrong_tasks_are_refused() -> None:
     with pytest.raises(ConfigError, match="different names"):
         PhasedSource(ROBOT, FRAME, [TaskPhase("a", Hold(START)), TaskPhase("a", Hold(START))], np.eye(3))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +46,30 @@ def test_every_controller_runs_a_case_of_every_study(study: str, case: str, name
     assert said == (study != "stack" and not entry.regulates_force)
     units = {channel.name for channel in made.channels}
     assert set(seen[-1].command.diagnostics) <= units  # every channel has its unit
+
+
+@pytest.mark.parametrize(("study", "case"), [("polishing", "tables-2-3-4-delayed"), ("stack", "figure8-plain")])
+def test_a_preview_in_between_two_solves_would_change_nothing(study: str, case: str) -> None:
+    """Torques bit for bit; baseline: without any preview they differ."""
+    torques: list[np.ndarray] = []
+    for every in (None, 0.0, np.inf):
+        made = wired(study, case, "offset-free-mpc")
+        lookahead = made.controller.needs.preview
+        assert lookahead is not None
+        assert lookahead.every > made.plant.period
+        source = next(part for part in _within(made.source) if hasattr(part, "lookahead"))
+        source.lookahead = replace(lookahead, every=lookahead.every if every is None else every)
+        seen: list[Tick] = []
+        loop.run(made.plant, made.estimator, made.source, made.controller, range(120), [seen.append], made.robot)
+        torques.append(np.array([tick.command.torque for tick in seen]))
+    np.testing.assert_array_equal(torques[0], torques[1])
+    assert np.abs(torques[0] - torques[2]).max() > 1e-6
+
+
+def _within(part: Any) -> Iterator[Any]:
+    while part is not None:
+        yield part
+        part = getattr(part, "inner", None)
 
 
 @pytest.mark.parametrize("name", list(controllers()))

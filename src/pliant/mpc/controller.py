@@ -67,9 +67,12 @@ class MpcController(Controller[MpcState]):
 
     @property
     def needs(self) -> Needs:
-        """A preview from the time at which its command takes effect, and what its model and compensations read."""
+        """A preview at every solve, from the time at which its command takes effect, and what its model and
+        compensations read."""
         wanted = needs_of(self.config)
-        return replace(wanted, preview=Lookahead(self.config.horizon, self.config.dt, self.delays.lead))
+        return replace(
+            wanted, preview=Lookahead(self.config.horizon, self.config.dt, self.delays.lead, self.config.period)
+        )
 
     @property
     def regulates_force(self) -> bool:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from pliant.interfaces import Lookahead, ReferenceSource
-from pliant.references.source import Started
 from pliant.signals import Estimate, Preview, Reference
 from pliant.spatial import Array
 
@@ -30,7 +29,16 @@ class Coming(Protocol):
         ...
 
 
-class Foreseen(ReferenceSource[Started]):
+class Looked(NamedTuple):
+    """When a source was started, and when a preview is due."""
+
+    time: float
+    """s of the loop's clock"""
+    next_look: float
+    """s"""
+
+
+class Foreseen(ReferenceSource[Looked]):
     """A timed source's references with a preview of its first task.
 
     Args:
@@ -41,15 +49,17 @@ class Foreseen(ReferenceSource[Started]):
     def __init__(self, inner: Timed, lookahead: Lookahead) -> None:
         self.inner, self.lookahead = inner, lookahead
 
-    def init(self, estimate: Estimate) -> Started:
-        return Started(estimate.time)
+    def init(self, estimate: Estimate) -> Looked:
+        return Looked(estimate.time, -np.inf)
 
-    def step(self, estimate: Estimate, state: Started) -> tuple[Reference, Started]:
+    def step(self, estimate: Estimate, state: Looked) -> tuple[Reference, Looked]:
         elapsed, ahead = estimate.time - state.time, self.lookahead
         now = self.inner.at(estimate.time, elapsed)
+        if not ahead.due(estimate.time, state.next_look):
+            return now, state
         delays = (instants(estimate.time, ahead) - estimate.time).tolist()
         later = [self.inner.at(estimate.time + delay, elapsed + delay) for delay in delays]
-        return replace(now, preview=preview_of(later)), state
+        return replace(now, preview=preview_of(later)), Looked(state.time, estimate.time + ahead.every)
 
 
 def instants(time: float, lookahead: Lookahead) -> Array:

@@ -12,7 +12,9 @@ import pinocchio as pin
 
 from pliant.errors import ConfigError, RunFailedError
 from pliant.interfaces import Lookahead, ReferenceSource
+from pliant.references.foreseen import instants
 from pliant.references.landing import Height
+from pliant.references.preview_rows import Moved, packed, preview_of_rows
 from pliant.references.task_phase import TaskPhase as TaskPhase
 from pliant.references.trajectories.rotation import Orientation, third_axis
 from pliant.references.trajectories.trajectory import vector
@@ -22,7 +24,7 @@ from pliant.spatial import Array
 
 _REMEMBERED = 1024  # instants
 _NO_WRENCH = vector(np.zeros(6), "no wrench")
-_WORLD = np.eye(3)
+_NOWHERE = np.zeros(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +40,8 @@ class PhaseState:
     """(3,) m where the frame was when contact began"""
     height: Height = field(default_factory=Height)
     """of the surface that was touched above the believed one"""
+    next_look: float = -np.inf
+    """s at which a preview is due"""
 
 
 class Said(NamedTuple):
@@ -52,6 +56,8 @@ class Said(NamedTuple):
     normal: tuple[Array, Array, Array] | None
     """the third of the axes and its first two time derivatives, (6,) each"""
     posture: Array | None
+    row: Array
+    """the same in a row, for a preview (`preview_rows`)"""
 
 
 class PhasedSource(ReferenceSource[PhaseState]):
@@ -100,7 +106,11 @@ class PhasedSource(ReferenceSource[PhaseState]):
         state = self._advanced(estimate, state)
         now = self._task(state, estimate.time)
         phase, posture = self.phases[state.index].name, self._said(state, estimate.time).posture
-        return Reference(estimate.time, (now,), posture, phase, self._preview(state, estimate.time)), state
+        ahead, preview = self.lookahead, None
+        if ahead is not None and ahead.due(estimate.time, state.next_look):
+            preview = self._preview(state, instants(estimate.time, ahead))
+            state = replace(state, next_look=estimate.time + ahead.every)
+        return Reference(estimate.time, (now,), posture, phase, preview), state
 
     # ------------------------------------------------------------------ inside
 
@@ -116,7 +126,8 @@ class PhasedSource(ReferenceSource[PhaseState]):
         axes = None if phase.axes is None else phase.axes.at(elapsed)
         wrench = _NO_WRENCH if phase.wrench is None else phase.wrench.at(elapsed).value
         normal, turned = (None, None) if axes is None else (_normal(axes), axes.rotation)
-        return Said(point.value, rotation, velocity, acceleration, wrench, turned, normal, posture)
+        row = packed(point.value, rotation, velocity, wrench, turned, normal, posture)
+        return Said(point.value, rotation, velocity, acceleration, wrench, turned, normal, posture, row)
 
     def _advanced(self, estimate: Estimate, state: PhaseState) -> PhaseState:
         """The phase of now, as the clock and the contact say."""
@@ -171,7 +182,8 @@ class PhasedSource(ReferenceSource[PhaseState]):
         """The following phase, beginning at `start`; contact, if it is new, is expected where the reference is."""
         position = self._task(state, start).position
         new = self.phases[state.index + 1].touches and not self.phases[state.index].touches
-        return PhaseState(state.index + 1, start, position, position if new else state.touch, state.height)
+        touch = position if new else state.touch
+        return PhaseState(state.index + 1, start, position, touch, state.height, state.next_look)
 
     def _expected(self, state: PhaseState, time: float) -> PhaseState:
         """The phase of a later time, as far as it can be known now."""
@@ -203,31 +215,21 @@ class PhasedSource(ReferenceSource[PhaseState]):
         """What the phase says, on its own clock; rounded, so that one instant seen from two ticks is one instant."""
         return self._at(state.index, round(max(time - state.start, 0.0), 9))
 
-    def _preview(self, state: PhaseState, time: float) -> Preview | None:
-        if self.lookahead is None:
-            return None
-        times = time + self.lookahead.lead + self.lookahead.step * np.arange(self.lookahead.nodes + 1, dtype=np.float64)
-        tasks: list[TaskReference] = []
+    def _preview(self, state: PhaseState, times: Array) -> Preview:
+        """What will be wanted at later times (N+1,) s."""
+        rows: list[Array] = []
+        moved: list[Moved] = []
         names: list[str] = []
-        postures: list[Array] = []
         for instant in times.tolist():
             state = self._expected(state, instant)
-            said = self._said(state, instant)
-            tasks.append(self._placed(state, said, instant))
-            names.append(self.phases[state.index].name)
-            postures += [] if said.posture is None else [said.posture]
-        return Preview(
-            time=times,
-            position=np.array([task.position for task in tasks]),
-            rotation=np.array([task.rotation for task in tasks]),
-            velocity=np.array([task.velocity for task in tasks]),
-            wrench=np.array([task.wrench for task in tasks]),
-            phase=tuple(names),
-            posture=np.array(postures) if len(postures) == len(times) else None,
-            task_rotation=np.array([_WORLD if x.task_rotation is None else x.task_rotation for x in tasks])
-            if self._turning
-            else None,
-        )
+            said, phase = self._said(state, instant), self.phases[state.index]
+            rows.append(said.row)
+            names.append(phase.name)
+            if phase.anchor == "surface" and said.normal is not None:
+                moved.append((_NOWHERE, *state.height.at(instant)[:2]))
+            else:
+                moved.append(({"begin": state.begin, "touch": state.touch}.get(phase.anchor, _NOWHERE), 0.0, 0.0))
+        return preview_of_rows(times, rows, moved, tuple(names), turning=self._turning)
 
     def _position(self, q: Array) -> Array:
         pin.framesForwardKinematics(self._model, self._data, q)
