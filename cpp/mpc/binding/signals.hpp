@@ -111,25 +111,38 @@ inline bool same_text(nb::handle a, nb::handle b) {
   return PyUnicode_Check(a.ptr()) && PyUnicode_Check(b.ptr()) && PyUnicode_Compare(a.ptr(), b.ptr()) == 0;
 }
 
+inline double read_time(nb::handle signal) { return nb::cast<double>(read_attribute(signal, names().time)); }
+
+// What of an estimate a step looks at.
+struct Looks {
+  bool force, torque, disturbance;  // always, where the controller has them
+  bool rest;                        // contact and environment, for a solve
+  bool environment;
+};
+
 // An estimate, as a controller with this contact frame reads it.
 class ReadEstimate {
  public:
   step::Estimated data{};
 
-  ReadEstimate(nb::handle estimate, nb::handle frame, long n, bool torque, bool disturbance, bool environment) {
-    data.time = nb::cast<double>(read_attribute(estimate, names().time));
+  ReadEstimate(nb::handle estimate, double time, nb::handle frame, long n, const Looks& looks) {
+    data.time = time;
+    data.contact = -1;
+    data.stiffness = -1;
     data.q = numbers_[0].vector(read_attribute(estimate, names().q), "the estimate's q", n);
     data.v = numbers_[1].vector(read_attribute(estimate, names().v), "the estimate's v", n);
-    if (torque) data.torque = numbers_[2].vector(read_attribute(estimate, names().torque), "the estimate's torque", n);
-    if (const nb::object wrench = found_in(read_attribute(estimate, names().wrenches), frame); wrench.is_valid())
-      data.wrench = numbers_[3].vector(wrench, "the estimate's wrench", 6);
-    if (disturbance)
+    if (looks.torque)
+      data.torque = numbers_[2].vector(read_attribute(estimate, names().torque), "the estimate's torque", n);
+    if (looks.force || looks.rest)
+      if (const nb::object wrench = found_in(read_attribute(estimate, names().wrenches), frame); wrench.is_valid())
+        data.wrench = numbers_[3].vector(wrench, "the estimate's wrench", 6);
+    if (looks.disturbance)
       if (const nb::object d = read_attribute(estimate, names().disturbance); !d.is_none())
         data.disturbance = numbers_[4].vector(d, "the estimate's disturbance", n);
+    if (!looks.rest) return;
     const nb::object contact = found_in(read_attribute(estimate, names().contacts), frame);
-    data.contact = contact.is_valid() ? PyObject_IsTrue(contact.ptr()) : -1;
-    data.stiffness = -1;
-    if (!environment) return;
+    if (contact.is_valid()) data.contact = PyObject_IsTrue(contact.ptr());
+    if (!looks.environment) return;
     if (const nb::object known = found_in(read_attribute(estimate, names().environments), frame); known.is_valid())
       data.stiffness = nb::cast<double>(read_attribute(known, names().stiffness));
   }

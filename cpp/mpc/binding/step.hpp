@@ -60,9 +60,10 @@ class PyStep {
     const step::Settings& settings = core_.settings();
     const step::Compensations& c = settings.compensation;
     if (!core_.fits(s.state)) throw std::invalid_argument("this state belongs to another controller");
-    const ReadEstimate e(estimate, contact_frame_, settings.n(), settings.torque_state(), c.disturbance, c.environment);
-    const bool due = core_.due(e.data.time, s.state);
-    const nb::object tasks = read_attribute(reference, names().tasks);
+    const double time = read_time(estimate);
+    const bool due = core_.due(time, s.state);
+    const ReadEstimate e(estimate, time, contact_frame_, settings.n(),
+                         {settings.force_state(), settings.torque_state(), c.disturbance, due, c.environment});
     std::optional<ReadTask> own, first;
     step::Wanted wanted{};
     ReadPreview preview;
@@ -70,7 +71,7 @@ class PyStep {
     const double* R_world_task = nullptr;
     const bool looks = due || (settings.riccati && settings.model.axes == Axes::surface);
     if (looks) {
-      read_tasks(tasks, own, first);
+      read_tasks(read_attribute(reference, names().tasks), own, first);
       if (own && own->data.task_rotation) R_world_task = own->data.task_rotation;
     }
     if (due) read_wanted(reference, own, first, preview, posture, s.ahead, wanted);
@@ -115,7 +116,7 @@ class PyStep {
   void read_wanted(nb::handle reference, const std::optional<ReadTask>& own, const std::optional<ReadTask>& first,
                    ReadPreview& preview, Numbers& posture, step::Ahead& ahead, step::Wanted& wanted) const {
     const long n = core_.settings().n();
-    wanted.time = nb::cast<double>(read_attribute(reference, names().time));
+    wanted.time = read_time(reference);
     if ((wanted.has_task = own.has_value())) wanted.task = own->data;
     if ((wanted.has_any = first.has_value())) wanted.first = first->data;
     if (const nb::object q = read_attribute(reference, names().posture); !q.is_none())

@@ -48,13 +48,14 @@ Refusal Controller::step(const Estimated& e, const Wanted* wanted, const double*
   if (s.force_state() && !e.wrench) return {Fault::no_wrench};
   if (s.compensation.disturbance && !e.disturbance) return {Fault::no_disturbance};
   double measured[3 * max_joints];
-  const double* x = measured_state(e, R_world_task, measured) ? measured : nullptr;
+  answer.solved = wanted && due(e.time, state);
+  const double* x = nullptr;  // of now, where somebody asks for it and it is finite
+  if ((answer.solved || s.riccati) && measured_state(e, R_world_task, measured)) x = measured;
   if (all_finite(e.q, size_t(n)) && all_finite(e.v, size_t(n))) {
     copy(memory.q, e.q, n);
     copy(memory.v, e.v, n);
   }
   if (s.compensation.disturbance && all_finite(e.disturbance, size_t(n))) copy(memory.disturbance, e.disturbance, n);
-  answer.solved = wanted && due(e.time, state);
   if (answer.solved) {
     const Refusal refusal = solve(e, *wanted, x, R_world_task, state);
     if (refusal.fault != Fault::none) return refusal;

@@ -1,0 +1,200 @@
+"""Where a tick's time goes, and how that compares with another version of pliant beside it.
+
+    python benchmarks/tick.py --against /path/to/other/environment/bin/python --write docs/performance.md
+
+Each run is a child process of one of the two Pythons, one after the other, so that what else the machine does meets
+both; a ratio is the median over rounds of the ratio within a round. Times are CPU time of the loop's thread.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import platform
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+CASES: dict[str, tuple[str, ...]] = {
+    "polishing, delayed, offset-free": ("polishing", "tables-2-3-4-delayed", "offset-free-mpc", "5.0"),
+    "polishing, delayed, force feedback": ("polishing", "tables-2-3-4-delayed", "force-feedback-mpc", "5.0"),
+    "polishing, delayed, classical": ("polishing", "tables-2-3-4-delayed", "classical-mpc", "5.0"),
+    "stack figure8-plain": ("stack", "figure8-plain", "stack", "5.0"),
+    "haptic floor": ("haptic", "floor", "haptic", "4.0"),
+}
+"""name → study, case, controller, s of simulated time"""
+PARTS = ("plant", "estimator", "source", "controller", "recorder")
+BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
+US = 1e6  # µs per s
+
+
+class Timed:
+    """A part of the loop whose steps are timed; everything else is the part's."""
+
+    def __init__(self, part: Any) -> None:
+        self.part, self.taken = part, list[float]()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.part, name)
+
+    def step(self, *inputs: Any) -> Any:
+        begin = time.thread_time()
+        answer = self.part.step(*inputs)
+        self.taken.append(time.thread_time() - begin)
+        return answer
+
+
+def core_of(controller: Any) -> tuple[Any, str]:
+    """The innermost controller's holder and the attribute that it stands in."""
+    holder = controller
+    while hasattr(holder.inner, "inner"):
+        holder = holder.inner
+    return holder, "inner"
+
+
+def worker(study: str, case: str, controller: str, duration: str) -> dict[str, Any]:
+    """One run by the command line's own way, with its loop timed. Needs no other function of the package."""
+    from pliant import loop
+    from pliant.cli.app import main
+
+    found: dict[str, Any] = {}
+    plain: Callable[..., Any] = loop.run
+
+    def run(plant: Any, estimator: Any, source: Any, control: Any, clock: Any, observers: Any = (), *more: Any) -> Any:
+        core = None
+        if hasattr(control, "inner"):
+            holder, name = core_of(control)
+            core = Timed(getattr(holder, name))
+            setattr(holder, name, core)
+        parts = [Timed(part) for part in (plant, estimator, source, control)]
+        recorded: list[float] = []
+
+        def watch(tick: Any, recorder: Any = observers[0]) -> None:
+            begin = time.thread_time()
+            recorder(tick)
+            recorded.append(time.thread_time() - begin)
+
+        begin = time.thread_time()
+        outcome = plain(*parts, clock, [watch, *observers[1:]], *more)
+        found["loop"] = (time.thread_time() - begin) / len(recorded)
+        found["parts"] = dict(zip(PARTS, [*(part.taken for part in parts), recorded], strict=True))
+        found["core"] = (core or parts[3]).taken
+        found["failure"] = outcome.failure
+        return outcome
+
+    loop.run = run
+    with tempfile.TemporaryDirectory() as folder:
+        argv = ["run", study, "--case", case, "--controller", controller, "--out", folder]
+        sys.argv = ["pliant", *argv, "--set", f"duration={duration}"]
+        begin = time.process_time()
+        with contextlib.suppress(SystemExit):
+            main()
+        found["run"] = time.process_time() - begin
+        found["log"] = sum(path.stat().st_size for path in Path(folder).rglob("*.mcap"))
+    found["peak"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
+    return summarised(found, float(duration))
+
+
+def summarised(found: dict[str, Any], duration: float) -> dict[str, float]:
+    """µs, ratios and MB of one run. A step that solves takes more than twice the shortest of twenty."""
+    core = sorted(found["core"])
+    limit = 2.0 * core[len(core) // 20]
+    quick = [taken for taken in found["core"] if taken <= limit]
+    long = [taken for taken in found["core"] if taken > limit] or quick
+    return {
+        "step without solve": US * median(quick),
+        "step that solves": US * median(long),
+        "step that solves, p99": US * percentile(long, 0.99),
+        **{part: US * sum(taken) / len(taken) for part, taken in found["parts"].items()},
+        "tick of the loop": US * found["loop"],
+        "loop: CPU s per simulated s": found["loop"] * len(found["parts"]["plant"]) / duration,
+        "whole run, CPU s": found["run"],
+        "log, MB": found["log"] / 1e6,
+        "peak memory, MB": found["peak"] / 1e6,
+    }
+
+
+def percentile(values: Sequence[float], share: float) -> float:
+    return sorted(values)[min(int(share * len(values)), len(values) - 1)]
+
+
+def measured(python: str, case: Sequence[str]) -> dict[str, float]:
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "MPLBACKEND": "agg"}
+    call = [python, __file__, "worker", *case]
+    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=False)
+    try:
+        row: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    except (IndexError, ValueError):
+        raise SystemExit(f"{' '.join(call)} gave no numbers:\n{done.stderr[-2000:]}") from None
+    return row
+
+
+def compared(rounds: int, against: str | None, names: Sequence[str]) -> dict[str, dict[str, tuple[float, ...]]]:
+    """Case → row → median here, and with another Python the median there and that of the ratios."""
+    found: dict[str, dict[str, tuple[float, ...]]] = {}
+    for name in names:
+        here: list[dict[str, float]] = []
+        there: list[dict[str, float]] = []
+        for _ in range(rounds):
+            here.append(measured(sys.executable, CASES[name]))
+            if against:
+                there.append(measured(against, CASES[name]))
+        found[name] = {}
+        for row in here[0]:
+            own = median(one[row] for one in here)
+            found[name][row] = (own,)
+            if against:
+                ratios = [a[row] / b[row] if b[row] else 1.0 for a, b in zip(here, there, strict=True)]
+                found[name][row] = (own, median(one[row] for one in there), median(ratios))
+        print(name, file=sys.stderr)
+    return found
+
+
+def as_text(found: dict[str, dict[str, tuple[float, ...]]], rounds: int) -> str:
+    """Markdown tables, one per case."""
+    parts = [f"{machine()}; medians of {rounds} rounds, CPU µs a tick where nothing else is said."]
+    for name, rows in found.items():
+        both = len(next(iter(rows.values()))) == 3
+        head = "| | here | there | here / there |\n|---|---:|---:|---:|" if both else "| | here |\n|---|---:|"
+        lines = [f"| {row} | " + " | ".join(f"{value:.3g}" for value in values) + " |" for row, values in rows.items()]
+        parts.append("\n".join([f"**{name}** ({CASES[name][3]} s simulated)\n", head, *lines]))
+    return "\n\n".join(parts)
+
+
+def machine() -> str:
+    info = Path("/proc/cpuinfo")
+    names = [line.split(":", 1)[1].strip() for line in info.read_text().splitlines() if line.startswith("model name")]
+    model = names[0] if names else platform.processor()
+    return f"{model}, Python {platform.python_version()}, load average {os.getloadavg()[0]:.1f}"
+
+
+def main() -> None:
+    if sys.argv[1:2] == ["worker"]:
+        print(json.dumps(worker(*sys.argv[2:6])))
+        return
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--against", help="Python of an environment with another version")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--cases", nargs="*", default=list(CASES), help="names, or their beginnings")
+    parser.add_argument("--write", type=Path, help="page whose measured part is replaced")
+    args = parser.parse_args()
+    names = [name for name in CASES if any(name.startswith(begin) for begin in args.cases)]
+    text = as_text(compared(args.rounds, args.against, names), args.rounds)
+    if args.write is None:
+        print(text)
+        return
+    page = args.write.read_text(encoding="utf-8")
+    before, rest = page.split(BEGIN)
+    args.write.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
