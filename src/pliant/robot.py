@@ -13,6 +13,7 @@ import pinocchio as pin
 from pliant.errors import ConfigError, RobotError, ShapeError, SignalError, options
 from pliant.robots.assembly import assemble
 from pliant.robots.locking import lock
+from pliant.robots.rotors import Rotors
 from pliant.robots.tool import Tool as Tool
 from pliant.robots.tool import with_rod
 from pliant.spatial import Array, is_rotation
@@ -41,6 +42,8 @@ class Robot:
     """frame → radius in m of the sphere with which that frame touches things"""
     home_from: str = "given"
     """where the home comes from"""
+    rotors_from: str = ""
+    """where the motors' inertia comes from; empty: nobody says one"""
     notes: tuple[str, ...] = ()
     """what was assumed, changed or left out when the robot was read, in sentences"""
     faults: tuple[str, ...] = ()
@@ -53,6 +56,7 @@ class Robot:
         locked: Mapping[str, float] | None = None,
         home: npt.ArrayLike | str | None = None,
         tool: Tool | None = None,
+        rotor_inertia: Rotors | None = None,
     ) -> Robot:
         """Loads a robot.
 
@@ -67,23 +71,15 @@ class Robot:
             home: (n,) rad or m for the joints that move, or the name of a keyframe. None: that of the catalogue, the
                 keyframe `home`, the first keyframe, or a bent pose that is searched for.
             tool: a rod with a contact frame at its end.
+            rotor_inertia: kg m² of the motors as every joint feels it, or one number for each joint of the file, or
+                "assumed": from the torque limits. None: that of the catalogue, or of the file (a URDF has none).
 
         Raises:
             RobotError: no such name or file, or the file holds something that cannot be represented; it is named.
             ConfigError: a locked joint or a keyframe that the robot does not have, or a home outside its limits.
         """
-        found = assemble(str(source), locked, home)
-        robot = Robot(
-            found.name,
-            found.model,
-            found.visual,
-            found.home,
-            found.source,
-            found.contact_radius,
-            found.home_from,
-            found.notes,
-            found.faults,
-        )
+        found = assemble(str(source), locked, home, rotor_inertia)
+        robot = Robot(**vars(found))
         return robot.with_tool(tool) if tool is not None else robot
 
     # ------------------------------------------------------------------ what it has

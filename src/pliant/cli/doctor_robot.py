@@ -31,6 +31,7 @@ def print_robot(console: Console, source: str, locked: Sequence[str] = ()) -> No
     lines = [
         f"read from  {robot.source or robot.name}",
         f"home       {robot.home_from}",
+        f"rotors     {robot.rotors_from or 'none: nobody says their inertia'}",
         f"gravity    {gravity} m/s², in the robot's base",
         f"mass       {mass:.3f} kg that move",
         f"frames     {', '.join(robot.frame_names)}",

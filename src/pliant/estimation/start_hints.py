@@ -19,6 +19,7 @@ def start_hints(estimate: Estimate) -> tuple[str, ...]:
         f"contact of frame {frame!r} is believed at t = {estimate.time:g} s, with"
         f" {np.linalg.norm(estimate.wrenches[frame][:3]):.2g} N: in free air the sensor carries something that the"
         " estimator does not know; give it a CarriedMass (identify_tool finds mass and centre), or tare at the start"
+        " (--set estimation.tare=weight)"
         for frame, touches in estimate.contacts.items()
         if touches and frame in estimate.wrenches
     )

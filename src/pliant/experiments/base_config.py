@@ -11,6 +11,8 @@ from pliant.controllers.joint_limits import JointLimitsConfig
 from pliant.errors import ConfigError, PliantError
 from pliant.experiments.config import Config
 from pliant.experiments.own_metrics import find_metric
+from pliant.robots.rotors import RotorInertia
+from pliant.tasks.estimation import Estimation
 
 MOST_STEPS = 10**8
 """of a run, of the control and of the physics"""
@@ -30,6 +32,8 @@ class CaseConfig(Config):
         description="joint → angle at which it is fixed, replaced as a whole; none: what the catalogue locks; {}: none",
         json_schema_extra={"unit": "rad"},
     )
+    rotor_inertia: RotorInertia = None
+    estimation: Estimation = Estimation()
     seed: int = Field(default=0, ge=0, description="of every random draw")
     duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     joint_limits: JointLimitsConfig | None = Field(

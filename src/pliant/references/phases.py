@@ -165,7 +165,8 @@ class PhasedSource(ReferenceSource[PhaseState]):
                 f"phase {landed.name!r}: contact was felt {1e3 * abs(found):.0f} mm"
                 f" {'above' if found > 0.0 else 'below'} the believed surface, more than the"
                 f" {1e3 * landed.within:.0f} mm within which it is looked for:"
-                " something stands in the way, the surface is elsewhere, or contact is believed too early"
+                " something stands in the way, the surface is elsewhere, or contact is believed too early: a load"
+                " that the sensor does not know is taken off with estimation.tare=weight"
             )
         gap = float(normal @ (arriving.position - here))
         height = Height(after.start, found, gap, float(normal @ arriving.velocity[:3]))

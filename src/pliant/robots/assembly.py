@@ -15,9 +15,10 @@ from pliant.robots import CATALOGUE, CatalogueEntry, locate
 from pliant.robots.chain import arm_of
 from pliant.robots.description import Description
 from pliant.robots.home import bent_home, zero_home
-from pliant.robots.inertia import check_inertia
+from pliant.robots.inertia import check_inertia, small_inertia
 from pliant.robots.locking import lock
 from pliant.robots.reading import read_description
+from pliant.robots.rotors import RULE, Rotors, set_rotors
 from pliant.spatial import Array
 
 
@@ -32,11 +33,17 @@ class Assembly:
     source: str
     contact_radius: Mapping[str, float]
     home_from: str
+    rotors_from: str
     notes: tuple[str, ...]
     faults: tuple[str, ...] = ()
 
 
-def assemble(source: str, locked: Mapping[str, float] | None, home: npt.ArrayLike | str | None) -> Assembly:
+def assemble(
+    source: str,
+    locked: Mapping[str, float] | None,
+    home: npt.ArrayLike | str | None,
+    rotors: Rotors | None,
+) -> Assembly:
     """Reads a robot and settles what its file leaves open. Arguments and errors: those of `Robot.load`."""
     entry = CATALOGUE.get(source)
     path = locate(source)
@@ -44,6 +51,7 @@ def assemble(source: str, locked: Mapping[str, float] | None, home: npt.ArrayLik
     locks = standing if locked is None else {**standing, **locked} if locked else {}
     description = read_description(path, locks)
     robot = _whole(description, entry, path, home if isinstance(home, str) else None)
+    robot.rotors_from = _settle_rotors(robot.model, entry, rotors)
     joints = {name: angle for name, angle in locks.items() if name not in description.welded}
     if joints:
         robot.model, robot.visual, robot.home = lock(robot.name, robot.model, robot.visual, robot.home, joints)
@@ -51,25 +59,36 @@ def assemble(source: str, locked: Mapping[str, float] | None, home: npt.ArrayLik
     robot.notes += tuple(notes)
     _add_arm_frames(robot, entry)
     _settle_home(robot, None if isinstance(home, str) else home)
+    if not robot.faults:
+        robot.notes += tuple(small_inertia(robot.model, robot.home))
     return robot
 
 
 def _whole(description: Description, entry: CatalogueEntry | None, path: Path, keyframe: str | None) -> Assembly:
     """The robot as its file has it, all joints free."""
-    model = description.model
-    if entry is not None and entry.rotor_inertia:
-        model.armature = np.full(model.nv, entry.rotor_inertia)
     home, told, notes = _stated_home(description, entry, path, keyframe)
     return Assembly(
         name=entry.name if entry is not None else path.stem,
-        model=model,
+        model=description.model,
         visual=description.visual,
         home=home,
         source=str(path),
         contact_radius=dict(entry.contact_radius) if entry is not None else {},
         home_from=told,
+        rotors_from="",
         notes=(*description.notes, *notes),
     )
+
+
+def _settle_rotors(model: pin.Model, entry: CatalogueEntry | None, asked: Rotors | None) -> str:
+    """Sets the motors' inertia. Returns where it comes from; "" if nobody says one."""
+    if asked is not None:
+        set_rotors(model, asked)
+        return RULE if asked == "assumed" else "argument"
+    if entry is not None and entry.rotors is not None:
+        set_rotors(model, entry.rotors)
+        return f"catalogue: {entry.rotors_from}"
+    return "file" if np.any(np.array(model.armature) > 0.0) else ""
 
 
 def _stated_home(

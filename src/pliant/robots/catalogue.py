@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from pliant.robots.rotors import IDENTIFIED_FR3, RULE, Rotors
+
 
 @dataclass(frozen=True)
 class CatalogueEntry:
@@ -18,8 +20,10 @@ class CatalogueEntry:
     """of pliant's own robots: URDF in this folder; of example-robot-data: path below its robots; of
     robot_descriptions: name of a module"""
     package: Literal["pliant", "example-robot-data", "robot_descriptions"] = "pliant"
-    rotor_inertia: float = 0.0
-    """kg m² at each joint; URDF has no field for it"""
+    rotors: Rotors | None = None
+    """the motors' inertia, of all joints of the file; None: that of the file"""
+    rotors_from: str = RULE
+    """where it comes from"""
     home: tuple[float, ...] = ()
     """rad, all joints of the file; empty: that of the file, or searched"""
     contact_radius: Mapping[str, float] = field(default_factory=dict)
@@ -45,33 +49,40 @@ _OWN = (
         "KUKA LWR 4+, 7 joints; kinematics, torques and speeds of the arm. Its dynamics are assumed: uniform cylinders"
         " of 2.7 kg (four), 1.7, 1.6 and 0.3 kg, rotor inertia 0.05 kg m²",
         "lwr4.urdf",
-        rotor_inertia=0.05,
+        rotors=0.05,
+        rotors_from="assumed",
         home=(0.0, 0.6, 0.0, -1.4, 0.0, 1.0, 0.0),
     ),
     CatalogueEntry(
         "iiwa7",
-        "KUKA LBR iiwa 7 R800, 7 joints; inertias as published with lbr_description, limits of the data sheet",
+        "KUKA LBR iiwa 7 R800, 7 joints; inertias as published with lbr_description, limits of the data sheet, assumed"
+        " rotors",
         "iiwa7.urdf",
+        rotors="assumed",
         home=(0.0, 1.0472, 0.0, -1.13446, 0.2, 0.7854, 0.0),
     ),
     CatalogueEntry(
         "iiwa14",
-        "KUKA LBR iiwa 14 R820, 7 joints; identified inertial parameters",
+        "KUKA LBR iiwa 14 R820, 7 joints; identified inertial parameters, assumed rotors",
         "iiwa14.urdf",
+        rotors="assumed",
         home=(0.0, 1.0472, 0.0, -1.13446, 0.2, 0.7854, 0.0),
     ),
     CatalogueEntry(
         "panda",
         "Franka Emika Panda without a hand, 7 joints; kinematics and limits of the maker's documentation, inertial"
-        " parameters as published with franka_ros",
+        " parameters as published with franka_ros, rotors as identified for the FR3",
         "panda.urdf",
+        rotors=IDENTIFIED_FR3,
+        rotors_from="identified for the FR3 (mujoco_menagerie), assumed to have the same drives",
         home=(0.0, -math.pi / 4, 0.0, -3 * math.pi / 4, 0.0, _QUARTER, math.pi / 4),
     ),
     CatalogueEntry(
         "ur5e",
         "Universal Robots UR5e, 6 joints; kinematics, masses, inertia, torques and speeds as the maker publishes them;"
-        " the elbow at ±180°, as far as the shoulder lets it; without rotor inertia",
+        " the elbow at ±180°, as far as the shoulder lets it; assumed rotors",
         "ur5e.urdf",
+        rotors="assumed",
         home=_UR_HOME,
     ),
     CatalogueEntry(
@@ -87,9 +98,10 @@ _DATA_ENTRIES = (
     *(
         CatalogueEntry(
             f"ur{size}",
-            f"Universal Robots UR{size}, 6 joints; everything from its URDF",
+            f"Universal Robots UR{size}, 6 joints; everything from its URDF but assumed rotors",
             f"ur_description/urdf/ur{size}_robot.urdf",
             _DATA,
+            rotors="assumed",
             home=_UR_HOME,
             flange="tool0",
         )
@@ -97,26 +109,29 @@ _DATA_ENTRIES = (
     ),
     CatalogueEntry(
         "xarm7",
-        "UFACTORY xArm 7, 7 joints; everything from its URDF",
+        "UFACTORY xArm 7, 7 joints; everything from its URDF but assumed rotors",
         "xarm_description/urdf/xarm7.urdf",
         _DATA,
+        rotors="assumed",
         home=(0.0, -0.5, 0.0, 1.0, 0.0, 1.5, 0.0),
         flange="link_eef",
     ),
     CatalogueEntry(
         "z1",
-        "Unitree Z1, 6 joints, its gripper locked; everything from its URDF",
+        "Unitree Z1, 6 joints, its gripper locked; everything from its URDF but assumed rotors",
         "z1_description/urdf/z1.urdf",
         _DATA,
+        rotors="assumed",
         home=(0.0, 1.5, -1.2, 1.2, 0.0, 0.0, 0.0),
         flange="gripperStator",
         locked={"jointGripper": 0.0},
     ),
     CatalogueEntry(
         "jaco2",
-        "Kinova JACO 2 with 6 joints, three of them continuous; everything from its URDF",
+        "Kinova JACO 2 with 6 joints, three of them continuous; everything from its URDF but assumed rotors",
         "kinova_description/robots/kinova.urdf",
         _DATA,
+        rotors="assumed",
         home=(1.91, 1.25, 2.22, -1.9, 1.13, -2.25),
         flange="j2s6s200_end_effector",
     ),

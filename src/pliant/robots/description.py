@@ -53,6 +53,11 @@ def set_limits(model: pin.Model, at: int, lower: float, upper: float) -> None:
     model.lowerPositionLimit, model.upperPositionLimit = low, high
 
 
+def is_revolute(model: pin.Model, joint: int) -> bool:
+    """Whether a joint turns; the others slide."""
+    return not str(model.joints[joint].shortname()).startswith("JointModelP")  # JointModelPX, JointModelPrismatic…
+
+
 def require_movement(model: pin.Model, source: object) -> None:
     """Raises RobotError if nothing in the robot moves."""
     if model.nv == 0:

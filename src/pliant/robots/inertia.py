@@ -6,12 +6,18 @@ import numpy as np
 import pinocchio as pin
 
 from pliant.errors import RobotError
-from pliant.robots.description import lock_hint
+from pliant.robots.description import is_revolute, lock_hint
 from pliant.spatial import Array
 
 TINY = 1e-6
 """kg, and kg m² about each axis: what a massless robot is given so that its kinematics can be used"""
 _NOTHING = 1e-12
+_LATE = 7e-3
+"""s: period and delays of a robot of today"""
+_LATE_SHARE = 0.42
+"""largest K T² / J of a critically damped loop"""
+_ASKED = 25.0
+"""N·m/rad; a tool of 0.2 m wants as much"""
 
 
 def check_inertia(model: pin.Model, source: object) -> tuple[list[str], tuple[str, ...]]:
@@ -49,6 +55,35 @@ def check_inertia(model: pin.Model, source: object) -> tuple[list[str], tuple[st
             notes.append(f"link {name!r} has {fault}")
             reasons.append(f"link {name!r} has {fault}")
     return notes, tuple(reasons)
+
+
+def small_inertia(model: pin.Model, home: Array) -> list[str]:
+    """What there is to say about joints that turn so easily that the loop's lateness bounds the stiffness about them.
+
+    A critically damped loop on an inertia J, all of it T late, is at its limit of stability with K = 0.42 J / T²: there
+    its crossover, 2.06 √(K/J), times T is its phase margin of 76°. J is what the joint feels with the others free.
+    """
+    inverse = np.linalg.inv(_mass_matrix(model, home))
+    found: list[tuple[str, float]] = []
+    for joint in range(1, model.njoints):
+        inertia = 1.0 / float(inverse[model.joints[joint].idx_v, model.joints[joint].idx_v])
+        if is_revolute(model, joint) and _LATE_SHARE * inertia / _LATE**2 < _ASKED:
+            found.append((str(model.names[joint]), inertia))
+    if not found:
+        return []
+    name, least = min(found, key=lambda one: one[1])
+    told = ", ".join(one for one, _ in found)
+    bound = _LATE_SHARE * least / _LATE**2
+    return [
+        f"little inertia about {told} ({least:.2g} kg m² at {name!r}): a loop that is {1e3 * _LATE:g} ms late holds at"
+        f" most {bound:.2g} N·m/rad there; if the motors are missing in the file, --set rotor_inertia=assumed or a"
+        " number in kg m² adds them"
+    ]
+
+
+def _mass_matrix(model: pin.Model, q: Array) -> Array:
+    upper = np.triu(np.array(pin.crba(model, model.createData(), q)))
+    return np.array(upper + np.triu(upper, 1).T)
 
 
 def _resistance(model: pin.Model) -> Array:

@@ -39,6 +39,16 @@ class Tool(Config):
     parent: str = Field(default="flange", min_length=1, description="frame that carries the tool")
 
 
+class Sensor(Config):
+    """Where the force sensor sits."""
+
+    frame: str | None = Field(
+        default=None,
+        description="the frame that carries the tool: the sensor weighs the tool, whose known mass is taken off; none:"
+        " the tool's, where it feels the contact alone",
+    )
+
+
 class Surface(Config):
     """The part, as the controller believes it. In its own axes: z is a plane's normal and a cylinder's axis."""
 

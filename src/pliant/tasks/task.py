@@ -7,7 +7,21 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from pliant.configuration import Config, Range, quantity
-from pliant.tasks.parts import Disturbance, Force, Limits, Path, Phases, Simulation, Surface, Timing, Tool, Truth
+from pliant.robots.rotors import RotorInertia
+from pliant.tasks.estimation import Estimation
+from pliant.tasks.parts import (
+    Disturbance,
+    Force,
+    Limits,
+    Path,
+    Phases,
+    Sensor,
+    Simulation,
+    Surface,
+    Timing,
+    Tool,
+    Truth,
+)
 from pliant.tasks.phase import Event, Impedance, Phase, Planner, Thing
 
 FORMAT = 1
@@ -26,7 +40,10 @@ class TaskParts(Config):
         description="joint → angle at which it is fixed; none: those that the catalogue locks",
         json_schema_extra={"unit": "deg"},
     )
+    rotor_inertia: RotorInertia = None
     tool: Tool = Tool()
+    sensor: Sensor = Sensor()
+    estimation: Estimation = Estimation()
     surface: Surface = Surface()
     path: Path = Path()
     force: Force = Force()

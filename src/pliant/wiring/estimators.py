@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 from pliant.entries import Believed
 from pliant.estimation import (
     Butterworth,
+    CarriedMass,
     DirectEstimator,
     EnvironmentEstimator,
     FilteredEstimator,
     FitConfig,
+    JointAcceleration,
     JointStateFilter,
     MomentumObserver,
     SurfaceEstimator,
@@ -25,6 +28,10 @@ from pliant.robot import Robot
 _JOINT_MEMORY = 0.3  # s
 _SLIDING = 0.02  # m/s; faster than that, an unknown tilt looks like a soft table
 _FIT_CUTOFF = 30.0  # Hz
+
+
+Load = tuple[Mapping[str, CarriedMass], Mapping[str, str]]
+"""sensor → what it is known to carry; sensor → the frame beyond it that touches"""
 
 
 @dataclass(frozen=True)
@@ -41,7 +48,13 @@ class Sensing:
     """s, of the joint state filter; 0: none; None: 0.3 s for controllers that want calm positions"""
     observer_gain: float = 30.0
     """rad/s, of the momentum observer"""
-    tare: Tare | None = None
+    carried: Mapping[str, CarriedMass] = field(default_factory=dict[str, CarriedMass])
+    """sensor → what it is known to carry"""
+    contact_frames: Mapping[str, str] = field(default_factory=dict[str, str])
+    """sensor → the frame beyond it that touches"""
+    acceleration_cutoff: float = 200.0
+    """Hz, of the joint accelerations with which what a sensor carries is taken off"""
+    tare: Literal["weight", "bias"] | None = None
     """what to do at the start about what the force sensor carries and nobody named; None: nothing"""
     surface: SurfaceFitConfig | None = None
     """how the pressed surface's tilt is estimated from the path of the contact; None: it is as believed"""
@@ -55,8 +68,18 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensi
     """
     gain, period = sensing.velocity_gain, believed.period
     normal = (0.0, 0.0, 1.0) if believed.surface is None else believed.surface
+    tare = None if sensing.tare is None else Tare(kind=sensing.tare)
     felt: Estimator[Any] = (
-        WrenchEstimator(robot, velocity_gain=gain, tare=sensing.tare) if sensing.felt else DirectEstimator(gain)
+        WrenchEstimator(
+            robot,
+            sensing.carried,
+            velocity_gain=gain,
+            contact_frames=sensing.contact_frames,
+            acceleration=JointAcceleration(sensing.acceleration_cutoff),
+            tare=tare,
+        )
+        if sensing.felt
+        else DirectEstimator(gain)
     )
     if sensing.wrench_cutoff is not None:
         felt = FilteredEstimator(felt, wrench=Butterworth(sensing.wrench_cutoff, period))

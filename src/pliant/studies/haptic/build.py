@@ -9,6 +9,7 @@ import pinocchio as pin
 
 from pliant.entries import ControllerConfig
 from pliant.errors import ConfigError
+from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import Needs, Plant, ReferenceSource
 from pliant.references.planners.attractor_planner import AttractorPlanner
 from pliant.references.planners.harmonic_attractor import AttractorSettings
@@ -25,7 +26,6 @@ from pliant.studies.haptic.safety import warnings_of
 from pliant.studies.haptic.scene import scene_of
 from pliant.studies.haptic.script import schedule
 from pliant.telemetry.channels import Channel
-from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -47,7 +47,7 @@ def build(config: HapticConfig) -> Experiment:
         believed=config.believed,
         plant=lambda felt: plant_of(config, robot),
         source=lambda lookahead: planned(config, robot, parameters),
-        sensing=Sensing(joint_memory=0.0),
+        sensing=sensing_of(config.estimation, joint_memory=0.0),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,
         channels=(Channel(f"planner/{config.frame}/clamped", "m"),),
@@ -58,7 +58,7 @@ def build(config: HapticConfig) -> Experiment:
 
 def robot_of(config: HapticConfig) -> Robot:
     """The leg, as heavy as the configuration says."""
-    robot = Robot.load(config.robot, locked=config.locked)
+    robot = Robot.load(config.robot, locked=config.locked, rotor_inertia=config.rotor_inertia)
     if config.hardware.mass_scale is None:
         return robot
     factors = robot.vector(config.hardware.mass_scale, "hardware.mass_scale")

@@ -8,8 +8,8 @@ import numpy as np
 import pinocchio as pin
 
 from pliant.errors import ConfigError
-from pliant.estimation import Tare
 from pliant.experiments.model_error import with_mass_error
+from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import Plant
 from pliant.references.postures.inverse_kinematics import Target, joint_box
 from pliant.references.postures.posture import mink_solver
@@ -21,7 +21,6 @@ from pliant.spatial import Array
 from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.studies.polishing.source import TURNED_DOWN, polishing_source, touching_point
 from pliant.studies.polishing.work_config import Pushes
-from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -32,19 +31,14 @@ def build(config: PolishingConfig) -> Experiment:
     Raises:
         PliantError: a robot, frame or parameter that does not fit.
     """
-    robot, settings = config.robot_model(), config.estimation
+    robot = config.robot_model()
     offer = Offer(
         robot=robot,
         model=with_mass_error(robot, config.model_mass_error, generator(config.seed, "model.masses")),
         believed=config.believed,
         plant=lambda felt: plant_of(config, robot),
         source=lambda lookahead: polishing_source(config, robot, lookahead),
-        sensing=Sensing(
-            wrench_cutoff=settings.wrench_cutoff,
-            joint_memory=settings.joint_memory,
-            observer_gain=settings.observer_gain,
-            tare=None if settings.tare is None else Tare(kind=settings.tare),
-        ),
+        sensing=sensing_of(config.estimation),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,
     )

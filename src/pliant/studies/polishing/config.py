@@ -14,9 +14,10 @@ from pydantic import Field
 from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import Config, merged
+from pliant.experiments.config import merged
 from pliant.mpc.presets import PRESETS
 from pliant.robot import Robot, Tool
+from pliant.robots.rotors import RotorInertia
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.work_config import Pushes, Table, Task
 from pliant.wiring.registry import find_controller
@@ -28,39 +29,10 @@ PHASES: Mapping[str, bool] = {"reach": False, "track": False, "ramp": True, "con
 """name of each phase → whether the tool touches in it"""
 
 
-class Estimation(Config):
-    """What stands between the sensors and the controller."""
-
-    joint_memory: float | None = Field(
-        default=None,
-        ge=0.0,
-        le=100.0,
-        description="of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, else 0",
-        json_schema_extra={"unit": "s"},
-    )
-    observer_gain: float = Field(
-        default=30.0,
-        gt=0.0,
-        le=1e4,
-        description="of the momentum observer, which runs where the controller asks for a disturbance",
-        json_schema_extra={"unit": "rad/s"},
-    )
-    wrench_cutoff: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e5,
-        description="of a Butterworth filter of the contact wrench; none: unfiltered",
-        json_schema_extra={"unit": "Hz"},
-    )
-    tare: Literal["weight", "bias"] | None = Field(
-        default=None,
-        description="what the force sensor reads in the first 20 ms, beyond what is known, counts as an unknown weight"
-        " or as an offset; none: it counts as contact",
-    )
-
-
 LOCKED: Mapping[str, Mapping[str, float]] = {"iiwa14": {"A7": 0.0}}
 """robot → joint → rad; what the paper holds still"""
+ROTORS: Mapping[str, RotorInertia] = {"iiwa14": 0.0}
+"""robot → kg m²; the paper's model has none, and the printed numbers are those of that model"""
 
 
 class PolishingConfig(CaseConfig):
@@ -75,6 +47,12 @@ class PolishingConfig(CaseConfig):
         description="joint → angle at which it is fixed, replaced as a whole; none: A7 of the iiwa14 as in the paper,"
         " of another robot what the catalogue locks; {}: none",
         json_schema_extra={"unit": "rad"},
+    )
+    rotor_inertia: RotorInertia = Field(
+        default=None,
+        description="the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: 0 for"
+        " the iiwa14, whose model in the paper has none, of another robot that of the catalogue or of the file",
+        json_schema_extra={"unit": "kg m²"},
     )
     duration: float = Field(default=10.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     period: float = Field(default=1e-3, gt=0.0, description="control period", json_schema_extra={"unit": "s"})
@@ -111,7 +89,6 @@ class PolishingConfig(CaseConfig):
         json_schema_extra={"unit": "1"},
     )
     pushes: Pushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
-    estimation: Estimation = Estimation()
     preset: Literal["tuned", "perfect", "paper"] = Field(
         default="tuned",
         description="what `control` starts from: weights tuned for the imperfect robot, for a perfect one, or the"
@@ -161,7 +138,9 @@ class PolishingConfig(CaseConfig):
         tool = Tool(frame=FRAME)
         heavier = Tool(frame=FRAME, mass=tool.mass + unknown_mass)
         locked = LOCKED.get(self.robot) if self.locked is None else self.locked
-        return Robot.load(self.robot, locked=locked, tool=heavier).with_contact(FRAME, BALL_RADIUS)
+        rotors = ROTORS.get(self.robot) if self.rotor_inertia is None else self.rotor_inertia
+        arm = Robot.load(self.robot, locked=locked, tool=heavier, rotor_inertia=rotors)
+        return arm.with_contact(FRAME, BALL_RADIUS)
 
     def parameters(self) -> ControllerConfig:
         """The controller's parameters: its defaults, those of this study, what is known of the robot's delays, then

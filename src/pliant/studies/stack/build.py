@@ -11,6 +11,7 @@ import numpy as np
 from pliant.controllers.profiles import linear_range
 from pliant.errors import ConfigError
 from pliant.experiments.model_error import with_mass_error
+from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Foreseen
 from pliant.references.postures.posture_source import PostureSource
@@ -21,7 +22,6 @@ from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Push, Scen
 from pliant.simulation.seeding import generator
 from pliant.studies.stack.config import Path, StackConfig
 from pliant.studies.stack.placement import Placement, placed
-from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -55,7 +55,9 @@ def build(config: StackConfig) -> Experiment:
             observe=[tool, elbow],
         ),
         source=lambda lookahead: _changed(_foreseen(source, lookahead), config, rng_tuning),
-        sensing=Sensing(felt=False, velocity_gain=config.joints.velocity_filter, joint_memory=0.0),
+        sensing=sensing_of(
+            config.estimation, felt=False, velocity_gain=config.joints.velocity_filter, joint_memory=0.0
+        ),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,
     )

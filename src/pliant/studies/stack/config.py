@@ -181,7 +181,7 @@ class StackConfig(CaseConfig):
 
     def robot_model(self) -> Robot:
         """The arm."""
-        return Robot.load(self.robot, locked=self.locked)
+        return Robot.load(self.robot, locked=self.locked, rotor_inertia=self.rotor_inertia)
 
     @property
     def believed(self) -> Believed:

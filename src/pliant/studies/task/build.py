@@ -8,6 +8,7 @@ from typing import Any
 
 from pliant.estimation import SurfaceFitConfig
 from pliant.experiments.model_error import with_mass_error
+from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import ReferenceSource
 from pliant.references.felt_surface import CHANNELS, OnFeltSurface
 from pliant.references.surface_task import SurfaceTask, SurfaceTaskSettings, surface_task
@@ -16,11 +17,11 @@ from pliant.robot import Robot
 from pliant.simulation.seeding import generator
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import force_of, laid_out
+from pliant.studies.task.sensor import known_load
 from pliant.studies.task.world import plant_of, true_surface
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.parts import Truth
 from pliant.telemetry.schema import Channel
-from pliant.wiring.estimators import Sensing
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -76,7 +77,9 @@ def build(case: TaskCase) -> Experiment:
         believed=believed,
         plant=lambda felt: plant_of(case, robot, surface, made.references.start),
         source=lambda ahead: _source(case, made.references.source(ahead)),
-        sensing=Sensing(velocity_gain=case.velocity_share, surface=surface_fit(case)),
+        sensing=sensing_of(
+            case.estimation, velocity_gain=case.velocity_share, surface=surface_fit(case), load=known_load(case)
+        ),
         channels=_FELT if case.force.along == "estimated" else (),
         torque_step=case.torque_step,
         joint_limits=case.joint_limits,

@@ -13,6 +13,7 @@ import pinocchio as pin
 from pliant.entries import Believed, ControllerConfig
 from pliant.errors import ConfigError
 from pliant.experiments.model_error import with_mass_error
+from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import Lookahead, Plant, ReferenceSource
 from pliant.references.foreseen import Foreseen
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
@@ -39,10 +40,11 @@ from pliant.studies.task.listed import (
     stages_of,
     tracks_of,
 )
+from pliant.studies.task.sensor import known_load, sensor_of
 from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
 from pliant.tasks.phase import Track
 from pliant.telemetry.schema import Channel
-from pliant.wiring.estimators import Sensing
+from pliant.wiring.estimators import Load
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -97,7 +99,13 @@ def build_list(case: TaskCase) -> Experiment:
         believed=made.believed,
         plant=lambda felt: _plant(case, made, felt),
         source=lambda lookahead: _source(case, made, lookahead),
-        sensing=Sensing(felt=not tracking, velocity_gain=case.velocity_share, joint_memory=0.0),
+        sensing=sensing_of(
+            case.estimation,
+            felt=not tracking,
+            velocity_gain=case.velocity_share,
+            joint_memory=0.0,
+            load=_load(case, frames[0]),
+        ),
         torque_step=case.torque_step,
         joint_limits=case.joint_limits,
         duration=made.duration,
@@ -175,7 +183,7 @@ def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:
         physics_step=case.simulation.physics_step,
         start=made.start,
         joints=JointEffects(truth.joint_friction, truth.joint_damping, case.compensates),
-        sensors=[ForceSensor(frames[0])] if felt else [],
+        sensors=[_sensor(case, frames[0], heavier)] if felt else [],
         pushes=pushes_of(case),
         observe=list(frames),
     )
@@ -185,6 +193,14 @@ def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:
     weight = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), made.start))
     holding = weight if case.compensates == "none" else np.zeros(robot.n)
     return ImperfectPlant(plant, imperfections, seed=case.seed, period=case.simulation.period, holding_torque=holding)
+
+
+def _sensor(case: TaskCase, frame: str, unknown_mass: float) -> ForceSensor:
+    return sensor_of(case, unknown_mass) if frame == case.tool.frame else ForceSensor(frame)
+
+
+def _load(case: TaskCase, frame: str) -> Load:
+    return known_load(case) if frame == case.tool.frame else ({}, {})
 
 
 def _tracked(case: TaskCase, robot: Robot) -> PostureSource:

@@ -38,7 +38,8 @@ def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
     tool = task.tool
     made = Tool(tool.length, tool.mass + unknown_mass, tool.radius, tool.parent, tool.frame)
     locked = None if task.locked is None else {joint: math.radians(angle) for joint, angle in task.locked.items()}
-    return Robot.load(source, locked=locked, tool=made).with_contact(tool.frame, tool.radius)
+    arm = Robot.load(source, locked=locked, tool=made, rotor_inertia=task.rotor_inertia)
+    return arm.with_contact(tool.frame, tool.radius)
 
 
 def laid_out(task: TaskParts, source: str) -> tuple[Robot, SurfaceGeometry, Toolpath]:

@@ -48,9 +48,10 @@ def robot_of_list(case: TaskCase, unknown_mass: float = 0.0) -> Robot:
     driven = [frame for one in case.phase for frame in one.tracks] or [frame_of(case)]
     locked = None if case.locked is None else {joint: math.radians(angle) for joint, angle in case.locked.items()}
     if tool.frame not in driven:
-        return Robot.load(case.robot, locked=locked)
+        return Robot.load(case.robot, locked=locked, rotor_inertia=case.rotor_inertia)
     made = Tool(tool.length, tool.mass + unknown_mass, tool.radius, tool.parent, tool.frame)
-    return Robot.load(case.robot, locked=locked, tool=made).with_contact(tool.frame, tool.radius)
+    arm = Robot.load(case.robot, locked=locked, tool=made, rotor_inertia=case.rotor_inertia)
+    return arm.with_contact(tool.frame, tool.radius)
 
 
 def scene_of(case: TaskCase) -> Scene:

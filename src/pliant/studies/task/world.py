@@ -13,7 +13,7 @@ from pliant.configuration import validated
 from pliant.interfaces import Plant
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
-from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, MujocoPlant, Push, Scene
+from pliant.simulation import Imperfections, ImperfectPlant, JointEffects, MujocoPlant, Push, Scene
 from pliant.simulation import Surface as Touch
 from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.scene import fixed_part
@@ -21,6 +21,7 @@ from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import robot_of
+from pliant.studies.task.sensor import sensor_of
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.draws import Drawn, drawn
 
@@ -76,7 +77,7 @@ def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array) -
         physics_step=case.simulation.physics_step,
         start=start,
         joints=JointEffects(case.truth.joint_friction, case.truth.joint_damping, case.compensates),
-        sensors=[ForceSensor(tool)],
+        sensors=[sensor_of(case, heavier)],
         pushes=pushes_of(case),
         observe=[tool],
         speed_stop=SPEED_STOP,

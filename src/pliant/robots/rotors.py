@@ -1,0 +1,72 @@
+"""The motors' inertia as the joints feel it, in the mass matrix of both models.
+
+A URDF has no field for it, and the wrist of an arm is little without it: 3e-4 kg m² instead of 0.07 and more. What is
+meant is what a joint feels while torques are commanded, less than gear² · rotor where a joint measures its torque and
+feeds it back.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+import pinocchio as pin
+from pydantic import Field
+
+from pliant.errors import ConfigError, options
+from pliant.robots.description import is_revolute
+from pliant.spatial import Array
+
+Rotors = float | tuple[float, ...] | Literal["assumed"]
+"""kg m² at every joint or at each of all joints of the file; "assumed": from their torque limits"""
+RotorInertia = Annotated[
+    Annotated[float, Field(ge=0.0, le=1e3)] | Literal["assumed"] | None,
+    Field(
+        description="the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: that of"
+        " the catalogue or of the file",
+        json_schema_extra={"unit": "kg m²"},
+    ),
+]
+"""a key of configurations"""
+
+IDENTIFIED_FR3 = (0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074)
+"""kg m², Franka Research 3, identified in torque control: `franka_fr3/fr3.xml` and its CHANGELOG (2025-04-25) of
+mujoco_menagerie"""
+PER_ROOT_TORQUE = 0.021
+"""kg m² / √(N·m): √τ_max times it is 0.196 and 0.073 kg m² for the drives of 87 and 12 N·m of the FR3"""
+RULE = f"assumed, {PER_ROOT_TORQUE:g} √(torque limit), the rule that fits the identified drives of the FR3"
+
+
+def set_rotors(model: pin.Model, rotors: Rotors) -> None:
+    """Gives every joint of a model its rotor inertia (kg m²); joints that slide keep theirs, unless all get one number.
+
+    Raises:
+        ConfigError: a negative number, another count than the robot has joints, or a rule where a limit is missing.
+    """
+    if isinstance(rotors, str):
+        model.armature = _assumed(model, rotors)
+        return
+    values = np.broadcast_to(np.asarray(rotors, dtype=np.float64), (model.nv,)) if np.ndim(rotors) == 0 else rotors
+    found = np.array(values, dtype=np.float64)
+    if found.shape != (model.nv,) or not (np.isfinite(found).all() and (found >= 0.0).all()):
+        raise ConfigError(
+            f"rotor_inertia must be one number or {model.nv}, kg m², none of them negative, got {rotors!r}"
+        )
+    model.armature = found
+
+
+def _assumed(model: pin.Model, rotors: str) -> Array:
+    if rotors != "assumed":
+        raise ConfigError(f"rotor_inertia must be a number in kg m² or 'assumed'; {options(['assumed'], rotors)}")
+    armature = np.array(model.armature)
+    for joint in range(1, model.njoints):
+        at, name = int(model.joints[joint].idx_v), model.names[joint]
+        if not is_revolute(model, joint):
+            continue
+        limit = float(model.upperEffortLimit[at])
+        if not (np.isfinite(limit) and limit > 0.0):
+            raise ConfigError(
+                f"rotor_inertia 'assumed' follows from the torque limits, and joint {name!r} has none; give kg m²"
+            )
+        armature[at] = PER_ROOT_TORQUE * np.sqrt(limit)
+    return armature
