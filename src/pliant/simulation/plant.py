@@ -49,7 +49,7 @@ class MujocoPlant(Plant[World]):
         links: parts of the robot that touch things along their length, beside the frames with a contact radius.
         observe: more frames whose true pose is to be known; those that touch, sense or are pushed are in any case.
         speed_stop: multiple of the joints' speed limits at which a run stops as failed, as a real arm stops; None:
-            never.
+            it does not.
 
     Raises:
         ConfigError: the period is not a multiple of the physics step, or the step is too long for a contact.
