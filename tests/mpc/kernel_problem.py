@@ -20,10 +20,11 @@ def polishing(
     axes: str = "world",
     bounds: bool = False,
     horizon: int = HORIZON,
+    dt: float = DT,
 ) -> tuple[_mpc.Solver, Vector]:
     """Solver with the weights of [FFMPC]'s circle phase pressing 20 N at the robot's home; state at rest there."""
     model = _mpc.Model(kind, dim, axes, baumgarte=(0.0, 10.0))
-    solver = _mpc.Solver(robot.chain, model, horizon, DT, bounds=bounds)
+    solver = _mpc.Solver(robot.chain, model, horizon, dt, bounds=bounds)
     n, p = robot.model.nv, solver.nodes
     rotation, translation = robot.chain.tool_placement(robot.home)
     p.state_reference[:, :n] = robot.home
@@ -43,7 +44,7 @@ def polishing(
     if kind == "torque_feedback":
         p.control_gravity_weight = 1e-9
     for name, scale in (("state", 1.0), ("translation", 1.0), ("velocity", 20.0), ("rotation", 1.0), ("force", 5.0)):
-        getattr(p, f"{name}_weight")[-1] *= scale * DT
+        getattr(p, f"{name}_weight")[-1] *= scale * dt
     x0 = np.zeros(solver.nx)
     x0[:n] = robot.home
     if kind == "force_feedback":

@@ -78,10 +78,11 @@ def dense_newton(
     return np.vstack([xs[:1], xs[1:] + dx]), us + du, step[at_u(0), 1:]
 
 
+@pytest.mark.parametrize("dt", [DT, 5e-3])
 @pytest.mark.parametrize(("kind", "dim"), CASES)
-def test_one_step_equals_dense_kkt(kind: str, dim: int) -> None:
+def test_one_step_equals_dense_kkt(kind: str, dim: int, dt: float) -> None:
     robot = catalogue_chain("lwr4")
-    solver, x0 = polishing(robot, kind, dim)
+    solver, x0 = polishing(robot, kind, dim, dt=dt)
     x0 = noisy(x0, 7, np.random.default_rng(0))
     xs, us = solver.xs, solver.us
     xs[0] = x0
@@ -94,11 +95,12 @@ def test_one_step_equals_dense_kkt(kind: str, dim: int) -> None:
     np.testing.assert_allclose(solution.feedback_gain, -gain, atol=1e-6 * np.max(np.abs(gain)))
 
 
+@pytest.mark.parametrize("dt", [DT, 5e-3])
 @pytest.mark.parametrize(("kind", "dim"), CASES)
-def test_converged_means_stationary(kind: str, dim: int) -> None:
+def test_converged_means_stationary(kind: str, dim: int, dt: float) -> None:
     """At a converged solution the dense Newton step is almost nothing, and the plan is dynamically feasible."""
     robot = catalogue_chain("lwr4")
-    solver, x0 = polishing(robot, kind, dim)
+    solver, x0 = polishing(robot, kind, dim, dt=dt)
     solution = solver.solve(noisy(x0, 7, np.random.default_rng(1)), max_iterations=50, tolerance=1e-9)
     assert solution.status == "converged"
     assert solution.kkt <= 1e-9
