@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from pliant.estimation.environment_fit import EnvironmentFit, FitConfig, FitState
+from pliant.frozen import changed
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
@@ -79,9 +81,10 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
             velocity = pin.getFrameVelocity(model, data, self._frame, axes).linear
             distance, normal, _ = self.surface.near(position)
             rate = -float(normal @ velocity)
-            sliding = float(np.linalg.norm(velocity + rate * normal))
+            across = velocity + rate * normal
+            sliding = math.sqrt(across.dot(across))
             if self.sliding is None or sliding <= self.sliding:
                 fit = self.fit.step(float(normal @ np.asarray(wrench[:3])), -distance, rate, fit)
         if fit.found is not None:
-            estimate = replace(estimate, environments={**estimate.environments, self.frame: fit.found})
+            estimate = changed(estimate, environments={**estimate.environments, self.frame: fit.found})
         return estimate, EnvironmentState(inner, fit)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from pliant.configuration import Config
 from pliant.environment import Environment
 from pliant.estimation.filters import Butterworth, Memory
+from pliant.frozen import changed
 from pliant.spatial import Array
 
 
@@ -94,18 +95,19 @@ class EnvironmentFit:
             return FitState(found=state.found)
         signals = np.array([depth, rate, force])
         if state.reference is None:
-            state = replace(state, reference=signals, filter=self._filter.init(np.zeros(3)))
+            state = changed(state, reference=signals, filter=self._filter.init(np.zeros(3)))
         assert state.reference is not None
         assert state.filter is not None
         value, memory = self._filter.step(signals - state.reference, state.filter)
-        state = replace(state, filter=memory)
+        state = changed(state, filter=memory)
         return self._learn(value, state) if self._informative(value, state) else state
 
     def _informative(self, value: Array, state: FitState) -> bool:
         if state.accepted is None:
             return True
-        moved = np.abs(value - state.accepted)
-        return bool(moved[2] >= self.config.least_force and moved[0] >= self.config.least_motion)
+        (depth, _, force), (depth_before, _, force_before) = value.tolist(), state.accepted.tolist()
+        stirred = abs(force - force_before) >= self.config.least_force
+        return stirred and abs(depth - depth_before) >= self.config.least_motion
 
     def _learn(self, value: Array, state: FitState) -> FitState:
         count = state.count + 1
@@ -114,7 +116,7 @@ class EnvironmentFit:
         mean = state.mean + share * off
         covariance = (1.0 - share) * (state.covariance + share * np.outer(off, off))
         found = self._solve(covariance, count, share) if count >= self.config.least_samples else None
-        return replace(state, accepted=value, count=count, mean=mean, covariance=covariance, found=found or state.found)
+        return changed(state, accepted=value, count=count, mean=mean, covariance=covariance, found=found or state.found)
 
     def _solve(self, covariance: Array, count: int, share: float) -> Environment | None:
         """K and B with their uncertainties; None where the data do not tell K."""

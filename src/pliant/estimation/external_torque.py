@@ -7,7 +7,7 @@ joint torque is measured and τ_ext is computed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -16,6 +16,7 @@ import pinocchio as pin
 from pliant.errors import ConfigError
 from pliant.estimation.filters import Butterworth, Memory
 from pliant.estimation.ordering import time_since
+from pliant.frozen import changed
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
@@ -115,13 +116,13 @@ class ExternalTorqueEstimator(Estimator[ExternalTorqueState]):
 
     def _completed(self, estimate: Estimate, q: Array, external: Array) -> Estimate:
         if self.frame is None:
-            return replace(estimate, disturbance=external)
+            return changed(estimate, disturbance=external)
         axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         J = pin.computeFrameJacobian(self.robot.model, self._data, q, self._index, axes)[: self.dimension]
         force = contact_force(J, external)
         wrench = np.concatenate([force, np.zeros(6 - self.dimension)])
         unexplained = np.asarray(external - J.T @ force, dtype=np.float64)
-        return replace(estimate, disturbance=unexplained, wrenches={**estimate.wrenches, self.frame: wrench})
+        return changed(estimate, disturbance=unexplained, wrenches={**estimate.wrenches, self.frame: wrench})
 
 
 def inverse_dynamics(robot: Robot, data: pin.Data, q: Array, v: Array, a: Array) -> Array:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from pliant.estimation.filters import LowPass, Memory
+from pliant.frozen import changed
 from pliant.interfaces import Estimator
 from pliant.signals import Estimate, Measurement
 
@@ -59,5 +60,5 @@ class FilteredEstimator(Estimator[FilteredState]):
             passed = {f: self.wrench.step(w, state.wrenches.get(f) or self.wrench.init(w)) for f, w in wrenches.items()}
             wrenches = {frame: value for frame, (value, _) in passed.items()}
             memories = {frame: memory for frame, (_, memory) in passed.items()}
-        estimate = replace(raw, v=v, torque=torque, wrenches=wrenches)
+        estimate = changed(raw, v=v, torque=torque, wrenches=wrenches)
         return estimate, FilteredState(inner, memory_v, memory_torque, memories)

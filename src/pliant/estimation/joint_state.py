@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from pliant.errors import ConfigError
 from pliant.estimation.ordering import time_since
+from pliant.frozen import changed
 from pliant.interfaces import Estimator
 from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
@@ -65,4 +66,4 @@ class JointStateFilter(Estimator[JointStateState]):
         readings = state.readings + 1
         gain = min(1.0, max(period / self.memory, 1.0 / readings))
         q = moved + gain * (estimate.q - moved)
-        return replace(estimate, q=q), JointStateState(inner, measurement.time, q, estimate.v, readings)
+        return changed(estimate, q=q), JointStateState(inner, measurement.time, q, estimate.v, readings)

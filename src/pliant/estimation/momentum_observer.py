@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -24,6 +24,7 @@ import pinocchio as pin
 
 from pliant.errors import ConfigError, options
 from pliant.estimation.ordering import time_since
+from pliant.frozen import changed
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
@@ -127,14 +128,14 @@ class MomentumObserver(Estimator[MomentumState]):
         estimate, inner = self.inner.step(measurement, state.inner)
         period = time_since(state.time, measurement)
         if period == 0.0:  # the first measurement starts the observer and is its first step, too
-            return replace(estimate, disturbance=state.disturbance), replace(state, inner=inner)
+            return changed(estimate, disturbance=state.disturbance), changed(state, inner=inner)
         torques = (*state.torques, self._applied(measurement))
         momentum, explained = self._model_terms(measurement, estimate.wrenches)
         unexplained = (momentum - state.momentum) / period - torques[0] - 0.5 * (explained + state.explained)
         share = -math.expm1(-self.gain * period)
         disturbance = state.disturbance + share * (unexplained - state.disturbance)
         after = MomentumState(inner, measurement.time, momentum, explained, torques[1:], disturbance)
-        return replace(estimate, disturbance=disturbance), after
+        return changed(estimate, disturbance=disturbance), after
 
     # ------------------------------------------------------------------ inside
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from pliant.environment import FeltSurface
 from pliant.errors import ConfigError
+from pliant.frozen import changed
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
@@ -95,14 +96,14 @@ class SurfaceEstimator(Estimator[SurfaceFitState]):
 
     def step(self, measurement: Measurement, state: SurfaceFitState) -> tuple[Estimate, SurfaceFitState]:
         estimate, inner = self.inner.step(measurement, state.inner)
-        state = replace(state, inner=inner)
+        state = changed(state, inner=inner)
         wrench = estimate.wrenches.get(self.frame)
         if wrench is None or not estimate.contacts.get(self.frame, False):
-            state = replace(state, summed=None, count=0)
+            state = changed(state, summed=None, count=0)
         else:
             state = self._touched(self._position(estimate.q), wrench, state)
         if state.felt is not None:
-            estimate = replace(estimate, surfaces={**estimate.surfaces, self.frame: state.felt})
+            estimate = changed(estimate, surfaces={**estimate.surfaces, self.frame: state.felt})
         return estimate, state
 
     # ------------------------------------------------------------------ inside
@@ -115,15 +116,15 @@ class SurfaceEstimator(Estimator[SurfaceFitState]):
         """The state after a reading in contact."""
         if state.felt is None:
             found = SurfaceFitState(state.inner, position, np.zeros(6), self._prior, position)
-            return replace(found, felt=self._felt(position, found))
+            return changed(found, felt=self._felt(position, found))
         reading = np.append(position, state.felt.normal @ wrench[:3])
         summed = reading if state.summed is None else state.summed + reading
-        state = replace(state, summed=summed, count=state.count + 1)
+        state = changed(state, summed=summed, count=state.count + 1)
         mean = summed / state.count
         if state.count < _AVERAGED or math.dist(mean[:3], state.last) < self.config.spacing:
             return state
-        state = replace(self._fitted(mean[:3], float(mean[3]), state), last=mean[:3], summed=None, count=0)
-        return replace(state, felt=self._felt(position, state))
+        state = changed(self._fitted(mean[:3], float(mean[3]), state), last=mean[:3], summed=None, count=0)
+        return changed(state, felt=self._felt(position, state))
 
     def _fitted(self, place: Array, force: float, state: SurfaceFitState) -> SurfaceFitState:
         """One step of the filter: the ball's centre is its radius over the surface, less what the surface gives way."""
@@ -136,7 +137,7 @@ class SurfaceEstimator(Estimator[SurfaceFitState]):
         gain = spread @ H / (float(H @ spread @ H) + self.config.place_std**2)
         x = state.shift_turn + gain * (self.config.radius - force / self.config.stiffness - distance)
         spread = spread - np.outer(gain, H @ spread)
-        return replace(state, shift_turn=x, covariance=0.5 * (spread + spread.T))
+        return changed(state, shift_turn=x, covariance=0.5 * (spread + spread.T))
 
     def _moved(self, state: SurfaceFitState) -> SurfaceGeometry:
         return self.surface.moved(state.shift_turn[:3], state.shift_turn[3:], state.pivot)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from pliant.errors import ConfigError
+from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
 from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array, exp3
@@ -65,7 +66,7 @@ class OnFeltSurface(ReferenceSource[FeltSurfaceState]):
             turn, normal, std = turn + share * (felt.turn - turn), felt.normal, felt.normal_std
             reference = turned(reference, exp3(turn), felt.pivot, self.frame)
         said = {"surface/turn": turn, "surface/normal": normal, "surface/normal_std": std}
-        reference = replace(reference, diagnostics={**reference.diagnostics, **said})
+        reference = changed(reference, diagnostics={**reference.diagnostics, **said})
         return reference, FeltSurfaceState(inner, estimate.time, turn)
 
 
@@ -73,11 +74,11 @@ def turned(reference: Reference, R: Array, pivot: Array, frame: str) -> Referenc
     """A reference whose task of a frame is turned by R (3, 3) about a pivot (3,) m; postures stay."""
     tasks = tuple(_task(task, R, pivot) if task.frame == frame else task for task in reference.tasks)
     ahead = reference.preview
-    return replace(reference, tasks=tasks, preview=None if ahead is None else _preview(ahead, R, pivot))
+    return changed(reference, tasks=tasks, preview=None if ahead is None else _preview(ahead, R, pivot))
 
 
 def _task(task: TaskReference, R: Array, pivot: Array) -> TaskReference:
-    return replace(
+    return changed(
         task,
         position=pivot + R @ (task.position - pivot),
         rotation=None if task.rotation is None else R @ task.rotation,
@@ -89,7 +90,7 @@ def _task(task: TaskReference, R: Array, pivot: Array) -> TaskReference:
 
 
 def _preview(ahead: Preview, R: Array, pivot: Array) -> Preview:
-    return replace(
+    return changed(
         ahead,
         position=pivot + (ahead.position - pivot) @ R.T,
         rotation=None if ahead.rotation is None else R @ ahead.rotation,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -11,6 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from pliant.errors import ConfigError, RunFailedError
+from pliant.frozen import changed
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import instants
 from pliant.references.landing import Height
@@ -109,7 +110,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         ahead, preview = self.lookahead, None
         if ahead is not None and ahead.due(estimate.time, state.next_look):
             preview = self._preview(state, instants(estimate.time, ahead))
-            state = replace(state, next_look=estimate.time + ahead.every)
+            state = changed(state, next_look=estimate.time + ahead.every)
         return Reference(estimate.time, (now,), posture, phase, preview), state
 
     # ------------------------------------------------------------------ inside
@@ -156,7 +157,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         """
         phase, landed = self.phases[after.index], self.phases[before.index]
         if phase.anchor != "surface" or phase.axes is None:
-            return replace(after, touch=here)
+            return changed(after, touch=here)
         normal = phase.axes.at(0.0).rotation[:, 2]
         arriving = self._task(before, after.start)
         found = float(normal @ (here - phase.motion.at(0.0).value))
@@ -170,7 +171,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
             )
         gap = float(normal @ (arriving.position - here))
         height = Height(after.start, found, gap, float(normal @ arriving.velocity[:3]))
-        return replace(after, touch=here, height=height)
+        return changed(after, touch=here, height=height)
 
     def _missed(self, phase: TaskPhase) -> str:
         return (

@@ -85,6 +85,7 @@ class MujocoPlant(Plant[World]):
         self.pushes = tuple(pushes)
         self.links = tuple(links)
         self.speed_stop = speed_stop
+        self._limit = robot.torque_limit
         self._fastest = np.full(robot.n, np.inf) if speed_stop is None else speed_stop * robot.velocity_limit
         self.start = robot.vector(robot.home if start is None else start, "start")
         frames = [*observe, *(s.frame for s in sensors), *(p.frame for p in pushes), *robot.contact_radius]
@@ -146,8 +147,7 @@ class MujocoPlant(Plant[World]):
         mujoco.mj_forward(self.model, data)
 
     def step(self, command: Command, world: World) -> tuple[Measurement, World]:
-        limit = self.robot.torque_limit
-        world.torque = clamp(command.torque, -limit, limit)
+        world.torque = clamp(command.torque, -self._limit, self._limit)
         if self.explicit is None:
             self._step_mujoco(world)
         else:

@@ -7,13 +7,14 @@ command ─▶ computation delay ─▶ torque loop ─▶ actuation ─▶ plan
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError
+from pliant.frozen import changed
 from pliant.interfaces import Compensation, Plant
 from pliant.signals import Command, Measurement, Truth
 from pliant.simulation.imperfections.actuation import Actuation, ActuationState
@@ -103,7 +104,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         self._build(n)
         held = true.torque_sent if self._holding_torque is None else self._holding_torque
         held = as_vector(held, n, "holding_torque")
-        true = replace(true, torque=held, torque_sent=held)
+        true = changed(true, torque=held, torque_sent=held)
         reading, sensing = self._sensing.step(true, self._sensing.init(true, self.seed))
         world = ImperfectWorld(
             inner=inner,
@@ -130,8 +131,8 @@ class ImperfectPlant(Plant[ImperfectWorld]):
             asked = clamp(asked, -self._actuation.limit, self._actuation.limit)
             sent += asked / self._ticks
             true = self._drive(asked, world)
-            self._sense(replace(true, torque_sent=asked), world)
-        return replace(world.reading, torque_sent=sent), world
+            self._sense(changed(true, torque_sent=asked), world)
+        return changed(world.reading, torque_sent=sent), world
 
     def truth(self, world: ImperfectWorld) -> Truth | None:
         return self.inner.truth(world.inner)
@@ -159,7 +160,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
 
     def _sense(self, true: Measurement, world: ImperfectWorld) -> None:
         wrenches, world.ripple_phase = self._ripple.step(true.wrenches, true.v, world.ripple_phase)
-        world.reading, world.sensing = self._sensing.step(replace(true, wrenches=wrenches), world.sensing)
+        world.reading, world.sensing = self._sensing.step(changed(true, wrenches=wrenches), world.sensing)
 
 
 def _check_damping(inner: Plant[Any], wanted: float) -> None:

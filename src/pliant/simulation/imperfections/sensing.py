@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from pliant.configuration import Config, quantity
+from pliant.frozen import changed
 from pliant.signals import Measurement
 from pliant.simulation.imperfections.delay import Delay, whole_periods
 from pliant.simulation.imperfections.link_config import PerJoint, per_joint
@@ -124,7 +125,7 @@ class Sensing:
         torque, state.torques = self._delay_torque.step(true.torque, state.torques)
         felt, state.wrenches = self._delay_force.step(old.wrenches, state.wrenches)
         draw = state.generators
-        reading = replace(
+        reading = changed(
             old,
             time=true.time,
             torque_sent=true.torque_sent,
