@@ -123,6 +123,29 @@ class ControllerEntry(Generic[C]):
         changed: C = merged(base, self.fixed)  # type: ignore[assignment]  # one family, one type
         return changed
 
+    def changed(self, config: C, changes: Mapping[str, Any]) -> C:
+        """A configuration of this controller with a user's changes, nested.
+
+        Raises:
+            ConfigError: an unknown key, a bad value, or one that would make another controller of it.
+        """
+        made = merged(config, changes)
+        if merged(made, self.fixed) != made:
+            fixed = ", ".join(f"{key} = {value!r}" for key, value in flat(self.fixed).items())
+            raise ConfigError(
+                f"controller {self.name!r} is what it is by {fixed}: a change of that is another controller"
+                " (`pliant list controllers`)"
+            )
+        return made
+
+
+def flat(values: Mapping[str, Any], above: str = "") -> dict[str, Any]:
+    """Nested values under dotted keys."""
+    found: dict[str, Any] = {}
+    for key, value in values.items():
+        found |= flat(value, f"{above}{key}.") if isinstance(value, Mapping) else {f"{above}{key}": value}  # pyright: ignore[reportUnknownArgumentType]
+    return found
+
 
 def merged_entries(*tables: Mapping[str, ControllerEntry[Any]]) -> dict[str, ControllerEntry[Any]]:
     """One table out of several. Raises ConfigError if two offer the same name."""

@@ -5,12 +5,14 @@ A state may own buffers that `step` reuses: the state passed in is consumed, kee
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Generic, Literal, Protocol, TypeVar
+from typing import Any, Generic, Literal, Protocol, TypeVar
 
+from pliant.errors import ConfigError, options
 from pliant.signals import Command, Estimate, Measurement, Reference, Tick, Truth
 from pliant.spatial import Array
 
@@ -58,6 +60,13 @@ class Lookahead:
         turned_back = time < next_look - self.every - CLOCK_ROUNDING
         return turned_back or time >= next_look - CLOCK_ROUNDING
 
+    def __post_init__(self) -> None:
+        if not (self.nodes >= 1 and 0.0 < self.step < math.inf and 0.0 <= self.lead < math.inf):
+            raise ConfigError(
+                "a preview takes 1 node or more, a step above zero and a lead of zero or more (s), got"
+                f" {self.nodes}, {self.step} and {self.lead}"
+            )
+
 
 @dataclass(frozen=True)
 class Needs:
@@ -80,6 +89,13 @@ class Needs:
     """the measured joint torques"""
     posture: bool = False
     """a joint configuration that goes with the task"""
+
+    def __post_init__(self) -> None:
+        preview: Any = self.preview
+        if not isinstance(preview, Lookahead | None):
+            raise ConfigError(f"Needs.preview takes a Lookahead(nodes, step) or None, got {preview!r}")
+        if self.disturbance not in ("none", "normal", "all"):
+            raise ConfigError(f"Needs.disturbance: {options(['none', 'normal', 'all'], str(self.disturbance))}")
 
     def words(self) -> tuple[str, ...]:
         """The same for people."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from pliant.errors import ConfigError, options
 from pliant.experiments.registry import get_study, study_names
 from pliant.robots import CATALOGUE, is_available
 from pliant.tasks.files import catalogue, load_task, read_task
-from pliant.wiring.registry import controllers
+from pliant.wiring.registry import broken_controllers, controllers
 
 
 def list_command(console: Console, what: str | None) -> None:
@@ -38,13 +39,16 @@ def _robots() -> Table:
 
 
 def _controllers() -> Table:
-    table = Table(
-        "controller", "family", "needs", "guarantees", "what it is", title="controllers", title_justify="left"
-    )
+    table = Table(title="controllers", title_justify="left")
+    table.add_column("controller", no_wrap=True)  # what one has to type
+    for heading in ("family", "needs", "guarantees", "what it is"):
+        table.add_column(heading)
     for entry in controllers().values():
         needs = ", ".join(entry.needs(entry.default).words()) or "–"
         force = "" if entry.regulates_force else "; regulates no force"
         table.add_row(entry.name, entry.family, needs, entry.guarantees, entry.summary + force)
+    for name, why in broken_controllers().items():
+        table.add_row(name, "broken", "", "", escape(why))
     table.add_row("MODULE:CLASS", "own", "", "", "yours, from an importable module or my_file.py:MyController")
     return table
 

@@ -10,8 +10,9 @@ from typing import Any
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.config import merged, read_toml
-from pliant.experiments.registry import get_study
+from pliant.experiments.registry import get_study, study_of_task
 from pliant.experiments.repeat import from_config, from_log, is_whole
+from pliant.tasks.task import Task
 
 Layer = tuple[str, Mapping[str, Any]]
 """where values come from, for people, and the values, nested"""
@@ -30,7 +31,7 @@ class Choice:
 
 
 def chosen(
-    target: str,
+    target: str | Task,
     case: str | None,
     overrides: Mapping[str, Any],
     changes: Mapping[str, Any],
@@ -40,7 +41,8 @@ def chosen(
 
     Args:
         target: name of a study or of a task of the catalogue, path of a task file, path of a TOML file with
-            `study = …` and any of its values, or the `config.toml` or log of a run, which is then repeated.
+            `study = …` and any of its values, or the `config.toml` or log of a run, which is then repeated; or a
+            task that is a value.
         case: of the study; None: the file's, or the study's first.
         overrides: those that are None count as not given.
         changes: nested.
@@ -51,6 +53,9 @@ def chosen(
         OutputError: a file that ends in `.mcap` is no log.
     """
     over = ((names[0], _given(overrides)), (names[1], changes))
+    if isinstance(target, Task):
+        study = study_of_task(target)
+        return _laid(study, study.case(case or next(iter(study.cases))), "the task", over)
     if target.endswith(".mcap"):
         return _repeated(target, case, from_log(Path(target)), over)
     values: dict[str, Any] = {}

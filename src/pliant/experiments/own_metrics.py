@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import entry_points
 from typing import Any
 
+import numpy as np
+
 from pliant.errors import ConfigError, options, told
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
@@ -62,4 +64,8 @@ def _measured(name: str, config: Any, log: Log) -> list[Metric]:
         raise ConfigError(f"metric {name!r} fails on {log.source}: {told(error)}") from error
     if any(not isinstance(metric, Metric) for metric in metrics):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ConfigError(f"metric {name!r} must return a pliant.Metric or several, got {found!r}")
+    for metric in metrics:
+        value: Any = metric.value
+        if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+            raise ConfigError(f"metric {name!r}: the value of {metric.name!r} must be a number, got {metric.value!r}")
     return metrics

@@ -10,6 +10,7 @@ from pliant.errors import ConfigError, options
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.config import validated
 from pliant.tasks.files import catalogue
+from pliant.tasks.task import Task
 
 _MODULES = {
     "stack": "pliant.studies.stack",
@@ -36,6 +37,24 @@ def run_of(name: str, values: Mapping[str, Any]) -> tuple[Study[Any], CaseConfig
         return study, validated(study.config_type, values)
     task: tuple[Study[Any], CaseConfig] = importlib.import_module(_TASKS).whole(name, values)
     return task
+
+
+def study_of_run(name: str, config: CaseConfig) -> Study[Any]:
+    """The study of one run; of a task its configuration says all, wherever its file is now.
+
+    Raises:
+        ConfigError: a configuration that is no task's.
+    """
+    if name in _MODULES:
+        return get_study(name)
+    task: Study[Any] = importlib.import_module(_TASKS).holding(name, config)
+    return task
+
+
+def study_of_task(task: Task, name: str = "task") -> Study[Any]:
+    """The study of a task that is a value: its case has that name."""
+    found: Study[Any] = importlib.import_module(_TASKS).of_value(task, name)
+    return found
 
 
 def get_study(name: str) -> Study[Any]:

@@ -110,8 +110,9 @@ def _measured(
     if failure is not None:
         return Result(config, (), failure, wired.warnings, path)
     drawn = study.figures(config, wired, log, folder) if folder is not None and figures else []
-    measured = _each_once((*study.judged(config, log), *own_metrics(config.own_metrics, config, log)))
-    verdicts = (study.verdict(config, measured), physical_verdict(log, wired.robot))
+    judged = study.judged(config, log)
+    measured = _each_once((*judged, *own_metrics(config.own_metrics, config, log)))
+    verdicts = (study.verdict(config, judged), physical_verdict(log, wired.robot))
     failure = "; ".join(verdict for verdict in verdicts if verdict) or None
     return Result(config, measured, failure, wired.warnings, path, tuple(drawn))
 

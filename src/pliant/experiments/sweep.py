@@ -13,7 +13,7 @@ from pliant.errors import ConfigError, PliantError, told
 from pliant.experiments.base import CaseConfig, Result, check_windows
 from pliant.experiments.config import assigned, merged
 from pliant.experiments.pool import Lost, Pool, in_this_process
-from pliant.experiments.registry import get_study
+from pliant.experiments.registry import get_study, study_of_run
 from pliant.experiments.results import Request, Run, key
 from pliant.experiments.row_keys import refuse_same_names
 from pliant.experiments.runner import run_case
@@ -72,7 +72,7 @@ def check_buildable(study_name: str, config: CaseConfig) -> None:
     Raises:
         PliantError: it cannot be wired.
     """
-    get_study(study_name).build(config)
+    study_of_run(study_name, config).build(config)
 
 
 def sweep(
@@ -110,7 +110,7 @@ def run_task(task: Task) -> Run:
 
 
 def _run(task: Task) -> Result:
-    study = get_study(task.study)
+    study = study_of_run(task.study, task.config)
     shown = study.shows(task.config)
     visible = task.folder is not None and task.folder.is_dir()  # not on a machine that does not share the folder
     folder = task.folder if visible and (shown or task.logs) else None

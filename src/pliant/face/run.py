@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pliant.errors import ConfigError
-from pliant.experiments.base import CaseConfig, Study
+from pliant.experiments.base import CaseConfig, Study, check_windows
 from pliant.experiments.choice import chosen
 from pliant.experiments.pool import open_pool
 from pliant.experiments.repeat import write_config
@@ -16,12 +16,13 @@ from pliant.experiments.runner import run_case
 from pliant.experiments.sweep import compared, sweep
 from pliant.experiments.tuning import nested
 from pliant.face.result import Comparison, Result, save
+from pliant.tasks.task import Task
 from pliant.telemetry.log import Log
 from pliant.telemetry.output import output_folder
 
 
 def run(
-    what: str | Path,
+    what: str | Path | Task,
     *,
     case: str | None = None,
     controller: str | None = None,
@@ -34,7 +35,8 @@ def run(
     """Runs one case in simulation and measures it.
 
     Args:
-        what: name of a study or a task, path of a TOML file, or `config.toml` or log of a run, which is repeated.
+        what: name of a study or a task, path of a TOML file, a `Task`, or `config.toml` or log of a run, which is
+            repeated.
         case: of the study; None: its first.
         controller: name, `my_module:MyController` or `my_file.py:MyController`; None: the case's.
         robot: catalogue name, or path of a URDF or MJCF file; None: the case's.
@@ -51,8 +53,9 @@ def run(
         PliantError: bad input, in one sentence; nothing was run.
     """
     overrides = {"controller": controller, "robot": robot, "seed": seed, "own_metrics": metrics}
-    asked = chosen(str(what), case, overrides, nested(changes))
+    asked = chosen(_named(what), case, overrides, nested(changes))
     study, config = asked.study, asked.config
+    check_windows(config)
     if out is not None:
         return _kept(study, config, output_folder(Path(out)))
     with tempfile.TemporaryDirectory() as folder:
@@ -61,7 +64,7 @@ def run(
 
 
 def compare(
-    what: str | Path,
+    what: str | Path | Task,
     controllers: Sequence[str],
     *,
     case: str | None = None,
@@ -89,18 +92,25 @@ def compare(
     Raises:
         PliantError: bad input, in one sentence; nothing was run.
     """
+    if isinstance(controllers, str):
+        raise ConfigError(f"a comparison takes a list of controllers, got the text {controllers!r}")
     if not controllers or seeds < 1:
         raise ConfigError(f"a comparison needs a controller and a seed, got {len(controllers)} and {seeds}")
-    choice = chosen(str(what), case, {"robot": robot, "own_metrics": metrics}, nested(changes))
+    choice = chosen(_named(what), case, {"robot": robot, "own_metrics": metrics}, nested(changes))
     study = choice.study
     asked = compared(choice.config, controllers, seeds)
     for config in asked[::seeds]:
+        check_windows(config)
         study.build(config)  # what is wrong with a controller is said before anything runs
     made: dict[tuple[str, int], Any] = {}
     with open_pool(min(jobs, len(asked))) as pool:
         for done in sweep(study.name, asked, pool=pool):
             made[done.result.config.controller, done.result.config.seed] = done.result
     return Comparison(study, [made[config.controller, config.seed] for config in asked])
+
+
+def _named(what: str | Path | Task) -> str | Task:
+    return what if isinstance(what, Task) else str(what)
 
 
 def _kept(study: Study[Any], config: CaseConfig, folder: Path) -> Result:

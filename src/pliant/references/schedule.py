@@ -4,14 +4,24 @@ from __future__ import annotations
 
 import bisect
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from pliant.errors import ConfigError
 from pliant.interfaces import ReferenceSource
-from pliant.references.source import Started
 from pliant.signals import Estimate, Reference
 
 
-class Schedule(ReferenceSource[Started]):
+@dataclass(frozen=True, slots=True)
+class ScheduleState:
+    """State between two ticks."""
+
+    start: float
+    """s"""
+    index: int = 0
+    """of the entry that holds"""
+
+
+class Schedule(ReferenceSource[ScheduleState]):
     """Swaps whole references at given times.
 
     Args:
@@ -27,13 +37,18 @@ class Schedule(ReferenceSource[Started]):
         if not entries or any(b <= a for a, b in zip(self._times[:-1], self._times[1:], strict=True)):
             raise ConfigError(f"a schedule needs entries at increasing times, got {self._times}")
 
-    def init(self, estimate: Estimate) -> Started:
-        return Started(estimate.time)
+    def init(self, estimate: Estimate) -> ScheduleState:
+        return ScheduleState(estimate.time)
 
-    def step(self, estimate: Estimate, state: Started) -> tuple[Reference, Started]:
+    def step(self, estimate: Estimate, state: ScheduleState) -> tuple[Reference, ScheduleState]:
         # 1 ns: a time that is a sum of periods may fall short of the entry's by rounding
-        index = bisect.bisect_right(self._times, estimate.time - state.time + 1e-9) - 1
-        return at_time(self._references[max(index, 0)], estimate.time), state
+        index = max(bisect.bisect_right(self._times, estimate.time - state.start + 1e-9) - 1, 0)
+        return at_time(self._references[index], estimate.time), ScheduleState(state.start, index)
+
+    def coming(self, state: ScheduleState, until: float) -> list[Reference]:
+        """What will be said other than now up to a time in s. Each reference has the time from which it holds."""
+        later = zip(self._times[state.index + 1 :], self._references[state.index + 1 :], strict=True)
+        return [at_time(said, state.start + time) for time, said in later if state.start + time <= until]
 
 
 class Mailbox(ReferenceSource[None]):

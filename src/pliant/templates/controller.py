@@ -22,7 +22,7 @@ class MyController(Controller[pin.Data]):
 
         frame: str = Field(default="flange", description="frame that is pulled")
         stiffness: float = Field(default=500.0, gt=0.0, description="K", json_schema_extra={"unit": "N/m"})
-        damping: float = Field(default=5.0, ge=0.0, description="of joints", json_schema_extra={"unit": "N·m s/rad"})
+        damping: float = Field(default=20.0, ge=0.0, description="of joints", json_schema_extra={"unit": "1/s"})
 
     def __init__(self, robot: Robot, config: Config, period: float) -> None:
         self.robot, self.config, self.period = robot, config, period  # period of control, s
@@ -42,7 +42,7 @@ class MyController(Controller[pin.Data]):
         return self.robot.model.createData()
 
     def step(self, estimate: Estimate, reference: Reference, state: pin.Data) -> tuple[Command, pin.Data]:
-        """τ = Jᵀ K (x_d − x) − D q̇ + g(q), within the limits."""
+        """τ = Jᵀ K (x_d − x) − d M(q) q̇ + g(q), within the limits: light joints get little damping."""
         model, frame = self.robot.model, self.robot.frame_id(self.config.frame)
         axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         J = pin.computeFrameJacobian(model, state, estimate.q, frame, axes)[:3]  # m/rad, (3, n)
@@ -50,6 +50,7 @@ class MyController(Controller[pin.Data]):
         target = next((task.position for task in reference.tasks if task.frame == self.config.frame), position)
         force = self.config.stiffness * (np.asarray(target) - position)  # N, world
         gravity = pin.computeGeneralizedGravity(model, state, estimate.q)  # N·m
-        wanted = J.T @ force - self.config.damping * estimate.v + gravity
+        M = np.array(pin.crba(model, state, estimate.q, pin.Convention.WORLD))  # kg m², (n, n)
+        wanted = J.T @ force - self.config.damping * M @ estimate.v + gravity
         torque = np.clip(wanted, -self.robot.torque_limit, self.robot.torque_limit)
         return Command(estimate.time, torque, wanted - torque, {"spring/force": force}), state

@@ -7,14 +7,16 @@ import importlib.util
 import inspect
 import sys
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from pliant.configuration import merged
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError, PliantError, options, told
-from pliant.interfaces import Controller, Needs
+from pliant.interfaces import Controller, Needs, ReferenceSource
 from pliant.robot import Robot
 
 
@@ -79,18 +81,44 @@ def entry_of(found: Any, name: str) -> ControllerEntry[Any]:
         ConfigError: it is neither.
     """
     if isinstance(found, ControllerEntry):
-        return found
+        return _guarded(found, name)
     if not (inspect.isclass(found) and issubclass(found, Controller)):
         raise ConfigError(f"{name} must be a subclass of pliant.interfaces.Controller or an entry, got {found!r}")
-    config: Any = vars(found).get("Config", ControllerConfig)
+    config: Any = getattr(found, "Config", ControllerConfig)
     if not (inspect.isclass(config) and issubclass(config, ControllerConfig)):
         raise ConfigError(f"{name}.Config must be a subclass of pliant.entries.ControllerConfig, got {config!r}")
     first = (inspect.getdoc(found) or "a controller of your own").splitlines()[0]
     return ControllerEntry(name, first, config(), _Build(found), family="own", suggest=_with_frame)
 
 
+def _guarded(entry: ControllerEntry[Any], name: str) -> ControllerEntry[Any]:
+    """Somebody's entry, whose parts answer with what they promise or with one sentence."""
+    parts: dict[str, type] = {"build": Controller, "suggest": ControllerConfig, "filter": ReferenceSource}
+    asked = {part: _Promised(name, part, getattr(entry, part), kind) for part, kind in parts.items()}
+    return replace(entry, build=_Build(asked["build"]), suggest=asked["suggest"], filter=asked["filter"])
+
+
+class _Promised:
+    """A function of somebody's entry. Raises ConfigError: it fails, or returns something else than it should."""
+
+    def __init__(self, name: str, part: str, function: Callable[..., Any], kind: type) -> None:
+        self._what, self._function, self._kind = f"controller {name!r}: its {part}", function, kind
+        self.__name__ = name
+
+    def __call__(self, *given: Any) -> Any:
+        try:
+            made = self._function(*given)
+        except PliantError:
+            raise
+        except (Exception, SystemExit) as error:
+            raise ConfigError(f"{self._what} fails: {told(error)}") from error
+        if not isinstance(made, self._kind):
+            raise ConfigError(f"{self._what} must return a {self._kind.__name__}, got {made!r:.80}")
+        return made
+
+
 class _Build:
-    """Makes controllers of a class."""
+    """Makes controllers of a class, or by a function."""
 
     def __init__(self, kind: Any) -> None:
         self._kind = kind
@@ -98,17 +126,24 @@ class _Build:
     def __call__(self, robot: Robot, config: ControllerConfig, period: float) -> Controller[Any]:
         try:
             made: Controller[Any] = self._kind(robot, config, period)
-            known = isinstance(made.needs, Needs) and isinstance(made.channels, Mapping)  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own)
+            known = isinstance(made.needs, Needs) and _has_units(made.channels)  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own)
         except PliantError:
             raise
         except (Exception, SystemExit) as error:
             raise ConfigError(f"controller {self._kind.__name__} cannot be made: {told(error)}") from error
         if not known:
-            raise ConfigError(f"controller {self._kind.__name__}: needs must be Needs, and channels name → unit")
+            raise ConfigError(f"controller {self._kind.__name__}: needs must be Needs, and channels name → ChannelUnit")
         return made
+
+
+def _has_units(channels: Any) -> bool:
+    return isinstance(channels, Mapping) and all(
+        isinstance(name, str) and isinstance(getattr(about, "unit", None), str)
+        for name, about in channels.items()  # pyright: ignore[reportUnknownVariableType]
+    )
 
 
 def _with_frame(robot: Robot, config: ControllerConfig, believed: Believed) -> ControllerConfig:
     if "frame" not in type(config).model_fields:
         return config
-    return config.model_copy(update={"frame": believed.frames[0]})
+    return merged(config, {"frame": believed.frames[0]})

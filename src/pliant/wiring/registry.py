@@ -12,6 +12,7 @@ from typing import Any
 
 from pliant.controllers.registry import CONTROLLERS
 from pliant.entries import ControllerEntry, find_entry, merged_entries
+from pliant.errors import ConfigError
 from pliant.mpc.registry import CONTROLLERS as PREDICTIVE
 from pliant.wiring.plugins import entry_of, imported
 from pliant.wiring.recipes import RECIPES
@@ -20,15 +21,31 @@ GROUP = "pliant.controllers"
 _OWN = merged_entries(CONTROLLERS, PREDICTIVE, RECIPES)
 
 
-@cache
 def controllers() -> dict[str, ControllerEntry[Any]]:
     """Name → entry of every controller that has a name.
 
-    Raises:
-        ConfigError: two have the same name, or an installed package offers something that is not a controller.
+    What an installed package offers and cannot be used is left out; `broken_controllers` says why.
     """
-    offered = {point.name: entry_of(imported(point.value), point.name) for point in entry_points(group=GROUP)}
-    return merged_entries(_OWN, offered)
+    return _offered()[0]
+
+
+def broken_controllers() -> dict[str, str]:
+    """Name of each controller that an installed package offers and that cannot be used → why not."""
+    return _offered()[1]
+
+
+@cache
+def _offered() -> tuple[dict[str, ControllerEntry[Any]], dict[str, str]]:
+    found, broken = dict(_OWN), dict[str, str]()
+    for point in entry_points(group=GROUP):
+        package = "an installed package" if point.dist is None else f"the package {point.dist.name!r}"
+        try:
+            if point.name in found:
+                raise ConfigError("there is another controller of that name")
+            found[point.name] = entry_of(imported(point.value), point.name)
+        except ConfigError as error:
+            broken[point.name] = f"controller {point.name!r} ({point.value}) of {package} cannot be used: {error}"
+    return found, broken
 
 
 def find_controller(name: str) -> ControllerEntry[Any]:
@@ -40,4 +57,6 @@ def find_controller(name: str) -> ControllerEntry[Any]:
     if ":" in name:
         return entry_of(imported(name), name)
     own = _OWN.get(name)  # looking through every installed package takes a moment
+    if own is None and name in broken_controllers() and name not in controllers():
+        raise ConfigError(broken_controllers()[name])
     return own or find_entry(controllers(), name)

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from pliant.configuration import merged
 from pliant.controllers.joint_limits import JointLimitsConfig, with_joint_limits
 from pliant.controllers.step_limit import DEFAULT_SHARE, StepLimit
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
+from pliant.errors import ConfigError
 from pliant.interfaces import Controller, Lookahead, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.telemetry.channels import Channel
@@ -37,6 +37,8 @@ class Offer:
     """springs that keep the joints off their limits; None: without"""
     channels: tuple[Channel, ...] = ()
     """units of what the source reports"""
+    deaf: str = ""
+    """where a force is asked for and there is nothing that could feel it: what would help; empty: it can be felt"""
     duration: float | None = None
     """s that the task takes; None: it goes on"""
     warnings: tuple[str, ...] = ()
@@ -55,7 +57,7 @@ def parameters_for(
         ConfigError: an unknown key or a bad value.
     """
     suited: ControllerConfig = entry.suggest(robot, entry.default if base is None else entry.over(base), believed)
-    return merged(suited, changes)
+    return entry.changed(suited, changes)
 
 
 def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offer) -> Experiment:
@@ -69,6 +71,12 @@ def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offe
     core: Controller[Any] = entry.build(model, parameters, believed.period)
     needs, filtered = core.needs, entry.needs(parameters)
     felt = offer.sensing.felt or needs.wrench or filtered.wrench
+    if offer.deaf and (needs.wrench or filtered.wrench):
+        raise ConfigError(
+            f"controller {entry.name!r} needs the contact wrench at frame {believed.presses or believed.frames[0]!r},"
+            f" and there is no force signal: {offer.deaf}, or use a controller that needs none"
+            " (`pliant list controllers`)"
+        )
     controller = with_joint_limits(core, robot, offer.joint_limits)
     if offer.torque_step is not None:
         controller = StepLimit(controller, robot, offer.torque_step)

@@ -10,7 +10,7 @@ import pinocchio as pin
 from pliant.entries import ControllerConfig
 from pliant.errors import ConfigError
 from pliant.experiments.sensing import sensing_of
-from pliant.interfaces import Needs, Plant, ReferenceSource
+from pliant.interfaces import Lookahead, Plant, ReferenceSource
 from pliant.references.planners.attractor_planner import AttractorPlanner
 from pliant.references.planners.harmonic_attractor import AttractorSettings
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
@@ -41,15 +41,15 @@ def build(config: HapticConfig) -> Experiment:
     robot = robot_of(config)
     robot.frame_id(config.frame)
     entry, parameters = config.entry, config.controller_parameters(robot)
-    _require_force_signal(config, entry.needs(parameters))
     offer = Offer(
         robot=robot,
         believed=config.believed,
         plant=lambda felt: plant_of(config, robot),
-        source=lambda lookahead: planned(config, robot, parameters),
+        source=lambda lookahead: planned(config, robot, parameters, lookahead),
         sensing=sensing_of(config.estimation, joint_memory=0.0),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,
+        deaf="" if config.sensor or not config.pressing else "set sensor=true, or ask for no force",
         channels=(Channel(f"planner/{config.frame}/clamped", "m"),),
         warnings=warnings,
     )
@@ -69,15 +69,28 @@ def robot_of(config: HapticConfig) -> Robot:
     return replace(robot, model=model)
 
 
-def planned(config: HapticConfig, robot: Robot, parameters: ControllerConfig) -> ReferenceSource[Any]:
-    """What the user wants, planned. The references carry the parameters of the exploration."""
+def planned(
+    config: HapticConfig, robot: Robot, parameters: ControllerConfig, lookahead: Lookahead | None = None
+) -> ReferenceSource[Any]:
+    """What the user wants, planned. The references carry the parameters of the exploration.
+
+    Raises:
+        ConfigError: a preview is wanted of the attractor planner, whose way depends on where the robot is.
+    """
     wanted = schedule(config, parameters.whole_tuning() or config.exploration)
     planner = config.planner
     if (config.entry.planner or planner.kind) == "attractor":
+        if lookahead is not None:
+            raise ConfigError(
+                f"controller {config.controller!r} wants a preview, which planner.kind = 'attractor' cannot give;"
+                " valid: 'superposition'"
+            )
         # as printed, eq. 3 gets stuck or runs away and nothing else could be compared: the corrected reading
         return AttractorPlanner(wanted, robot.placement, AttractorSettings(planner.speed, planner.acceleration))
     limits = PlannerLimits(linear=MotionLimits(planner.speed, planner.acceleration))
-    return HarmonicPlanner(wanted, robot.placement, limits, {config.frame: workspace_of(robot, config.frame)})
+    return HarmonicPlanner(
+        wanted, robot.placement, limits, {config.frame: workspace_of(robot, config.frame)}, lookahead
+    )
 
 
 def plant_of(config: HapticConfig, robot: Robot) -> Plant[Any]:
@@ -107,11 +120,3 @@ def plant_of(config: HapticConfig, robot: Robot) -> Plant[Any]:
         loop = imperfections.torque_loop.model_copy(update={"period": config.period})
         imperfections = imperfections.model_copy(update={"torque_loop": loop})
     return ImperfectPlant(plant, imperfections, seed=config.seed)
-
-
-def _require_force_signal(config: HapticConfig, needs: Needs) -> None:
-    if config.pressing and needs.wrench and not config.sensor:
-        raise ConfigError(
-            f"frame {config.frame!r} should press but has no force signal: set sensor=true, ask for no force, or use"
-            " a controller that needs none, such as haptic-hold"
-        )

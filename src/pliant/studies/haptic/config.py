@@ -19,7 +19,7 @@ from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import Config, merged
+from pliant.experiments.config import Config
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.robot import Robot
 from pliant.studies.haptic.fields import quantity
@@ -156,7 +156,7 @@ class HapticConfig(CaseConfig):
         base = bases.get(entry.family)
         if base is None:
             return parameters_for(entry, robot, self.believed, self.control)
-        return merged(entry.over(base), self.control)
+        return entry.changed(entry.over(base), self.control)
 
     def _recipe(self) -> ControllerConfig:
         own = self.impedance

@@ -17,7 +17,7 @@ from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import Config, merged
+from pliant.experiments.config import Config
 from pliant.robot import Robot
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
@@ -194,7 +194,7 @@ class StackConfig(CaseConfig):
         preset = PRESETS.get(entry.family, {}).get(self.preset)
         if preset is None:
             return parameters_for(entry, self.robot_model(), self.believed, self.control)
-        return merged(entry.over(preset), self.control)
+        return entry.changed(entry.over(preset), self.control)
 
     def frames(self) -> tuple[str, str]:
         """Tool and elbow frame: those of the first two tasks."""

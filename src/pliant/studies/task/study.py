@@ -7,6 +7,7 @@ from typing import Any
 
 from pliant.configuration import overlaid, validated
 from pliant.errors import ConfigError
+from pliant.experiments.base import CaseConfig
 from pliant.studies.task.config import TaskCase, case_of
 from pliant.studies.task.list_study import ListStudy
 from pliant.studies.task.path_study import PathStudy
@@ -19,6 +20,18 @@ def whole(name: str, values: Mapping[str, Any]) -> tuple[TaskStudy, TaskCase]:
     """A task without its file. Args: name: of the task; values: all of one run. Raises ConfigError."""
     case = validated(TaskCase, values)
     return _kind(name, {case.case: case}), case
+
+
+def holding(name: str, case: CaseConfig) -> TaskStudy:
+    """The study of one run of a task. Raises ConfigError: it is no task's."""
+    if not isinstance(case, TaskCase):
+        raise ConfigError(f"{name!r} is no study, and {type(case).__name__} is not the configuration of a task")
+    return _kind(name, {case.case: case})
+
+
+def of_value(task: Task, name: str) -> TaskStudy:
+    """The study of a task that is a value."""
+    return _kind(name, {name: case_of(task, name)})
 
 
 def study_of(name: str) -> TaskStudy:
