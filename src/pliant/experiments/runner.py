@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pliant import loop
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
 from pliant.experiments.own_metrics import own_metrics
@@ -62,9 +61,7 @@ def run_case(
     if progress is not None:
         watchers.append(_Reporter(progress, ticks))
     with recorder:
-        outcome = loop.run(
-            wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), watchers, wired.robot
-        )
+        outcome = wired.run(pace(range(ticks)), watchers)
         recorder.close(outcome.failure)
     log = recorder.log()
     wired = replace(wired, warnings=(*wired.warnings, *(notes.sentences or ())))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from pliant import loop
 from pliant.entries import ControllerConfig
-from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
+from pliant.interfaces import Controller, Estimator, Observer, Plant, ReferenceSource
 from pliant.robot import Robot
+from pliant.simulation.limited_plant import LimitedPlant, RunLimits
 from pliant.telemetry.channels import Channel
 
 
@@ -28,3 +31,10 @@ class Experiment:
     """what is unsafe about the parameters, in sentences"""
     parameters: ControllerConfig | None = None
     """of the controller, as it was built; None: not known"""
+    limits: RunLimits | None = None
+    """where a run ends as failed; None: nowhere"""
+
+    def run(self, clock: Iterable[object], observers: Sequence[Observer] = ()) -> loop.Outcome:
+        """Runs the loop, within the limits if there are any. Args and errors as of `loop.run`."""
+        plant = self.plant if self.limits is None else LimitedPlant(self.plant, self.limits, self.robot.torque_limit)
+        return loop.run(plant, self.estimator, self.source, self.controller, clock, observers, self.robot)

@@ -12,6 +12,7 @@ from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError
 from pliant.interfaces import Controller, Lookahead, Plant, ReferenceSource
 from pliant.robot import Robot
+from pliant.simulation.limited_plant import RunLimits
 from pliant.telemetry.channels import Channel
 from pliant.wiring.estimators import Sensing, estimator_for
 from pliant.wiring.experiment import Experiment
@@ -42,6 +43,8 @@ class Offer:
     duration: float | None = None
     """s that the task takes; None: it goes on"""
     warnings: tuple[str, ...] = ()
+    limits: RunLimits | None = None
+    """where a run ends as failed; None: nowhere"""
 
 
 def parameters_for(
@@ -95,6 +98,7 @@ def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offe
             *offer.warnings,
         ),
         parameters=parameters,
+        limits=offer.limits,
     )
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from typing import Any
 
-from pliant import loop
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.registry import get_study
@@ -69,9 +68,7 @@ class Worker:
         observers = [session.recorder, session.watch]
         failure: str | None = None
         try:
-            failure = loop.run(
-                wired.plant, wired.estimator, wired.source, wired.controller, pace(range(ticks)), observers, wired.robot
-            ).failure
+            failure = wired.run(pace(range(ticks)), observers).failure
         except PliantError as error:
             failure = str(error)
         finally:

@@ -18,6 +18,7 @@ from pliant.simulation.seeding import generator
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import force_of, laid_out
 from pliant.studies.task.sensor import known_load
+from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
 from pliant.studies.task.world import plant_of, true_surface
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.parts import Truth
@@ -58,8 +59,17 @@ def _planned(text: str) -> Planned:
     settings = SurfaceTaskSettings(
         phases.stand_off, phases.approach_speed, phases.search, phases.press, phases.leave, case.path.spins
     )
+    _refuse(case, path)
     references = surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
     return Planned(robot, surface, path, references)
+
+
+def _refuse(case: TaskCase, path: Toolpath) -> None:
+    """Raises ConfigError where the task asks for more than its limits allow."""
+    force = case.force.largest if path.force is None else float(max(path.force.at(t).value[0] for t in path.times))
+    speeds = (("path.speed", case.path.speed), ("phases.approach_speed", case.phases.approach_speed))
+    refuse_beyond(case.limits, [("force.normal" if path.force is None else "path.file", force)], speeds)
+    refuse_outside(case.limits, "path", path.places + case.tool.radius * path.normals)
 
 
 def build(case: TaskCase) -> Experiment:
@@ -84,6 +94,7 @@ def build(case: TaskCase) -> Experiment:
         torque_step=case.torque_step,
         joint_limits=case.joint_limits,
         duration=made.references.longest,
+        limits=run_limits(case.limits, case.tool.frame),
     )
     return wired(case.entry, case.controller_parameters(robot, believed), offer)
 

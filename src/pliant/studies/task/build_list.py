@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,18 +19,15 @@ from pliant.references.foreseen import Foreseen
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
 from pliant.references.planners.workspace import workspace_of
-from pliant.references.postures.posture import PostureOptions
-from pliant.references.postures.posture_source import PostureSource, posture_source
-from pliant.references.source import FrameMotion
-from pliant.references.stages import Ending, Stages
-from pliant.references.trajectories.shapes import lemniscate, sine_line
-from pliant.references.trajectories.trajectory import Hold, Trajectory
+from pliant.references.postures.posture_source import PostureSource
+from pliant.references.stages import Ending, Stage, Stages
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, MujocoPlant
 from pliant.simulation.seeding import generator
-from pliant.spatial import Array, frame_with_z_along
+from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
 from pliant.studies.task.listed import (
     changes_of,
     frame_of,
@@ -41,8 +38,8 @@ from pliant.studies.task.listed import (
     tracks_of,
 )
 from pliant.studies.task.sensor import known_load, sensor_of
+from pliant.studies.task.tracked import tracked_motion
 from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
-from pliant.tasks.phase import Track
 from pliant.telemetry.schema import Channel
 from pliant.wiring.estimators import Load
 from pliant.wiring.experiment import Experiment
@@ -71,17 +68,27 @@ def listed(case: TaskCase) -> Listed:
         raise ConfigError("events change targets, wrenches and impedances of phases with a target; this one tracks")
     if tracking:
         frames = tuple(case.phase[0].tracks)
-        source = _tracked(case, robot)
+        source = tracked_motion(case)
         believed = _believed(case, frames, oriented=True, presses=None)
         robot = robot if frames[0] == case.tool.frame else robot.with_contact(frames[0], case.tool.radius)
         parameters = case.controller_parameters(robot, believed)
         return Listed(robot, believed, parameters, source.start, _whole(case), source)
     start = robot.home if case.start is None else robot.vector(np.radians(case.start), "start")
     stages = stages_of(case, robot, robot.placement(start, frame_of(case))[1])
+    _refuse(case, stages)
     pressing = any(np.any(stage.task.wrench) for stage in stages)
     oriented = all(stage.task.rotation is not None for stage in stages)
     believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None)
     return Listed(robot, believed, case.controller_parameters(robot, believed), start, _whole(case), None)
+
+
+def _refuse(case: TaskCase, stages: Sequence[Stage]) -> None:
+    """Raises ConfigError where targets ask for more than the task's limits allow."""
+    forces = [(f"the wrench of phase {one.name!r}", float(np.linalg.norm(one.task.wrench[:3]))) for one in stages]
+    changes = [change for change in changes_of(case) if change.wrench is not None]
+    forces += [("the wrench of an event", float(np.linalg.norm(one.wrench[:3]))) for one in changes]  # type: ignore[index]
+    refuse_beyond(case.limits, forces, [("planner.speed", case.planner.speed)])
+    refuse_outside(case.limits, "a target", np.array([one.task.position for one in stages]))
 
 
 def build_list(case: TaskCase) -> Experiment:
@@ -109,6 +116,7 @@ def build_list(case: TaskCase) -> Experiment:
         torque_step=case.torque_step,
         joint_limits=case.joint_limits,
         duration=made.duration,
+        limits=run_limits(case.limits, frames[0]),
         channels=() if tracking else (Channel(f"planner/{frames[0]}/clamped", "m"),),
     )
     return wired(case.entry, made.parameters, offer)
@@ -183,7 +191,7 @@ def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:
         physics_step=case.simulation.physics_step,
         start=made.start,
         joints=JointEffects(truth.joint_friction, truth.joint_damping, case.compensates),
-        sensors=[_sensor(case, frames[0], heavier)] if felt else [],
+        sensors=[_sensor(case, frames[0], heavier)] if felt or case.limits.force is not None else [],
         pushes=pushes_of(case),
         observe=list(frames),
     )
@@ -201,48 +209,3 @@ def _sensor(case: TaskCase, frame: str, unknown_mass: float) -> ForceSensor:
 
 def _load(case: TaskCase, frame: str) -> Load:
     return known_load(case) if frame == case.tool.frame else ({}, {})
-
-
-def _tracked(case: TaskCase, robot: Robot) -> PostureSource:
-    """The motion of the first frame with the posture along it; found once for all runs of it."""
-    tracks_of(case)
-    parts = {"case", "robot", "locked", "tool", "moves", "phase"}
-    return _solved(
-        case.model_copy(update={"controller": "", "case": ""}).model_dump_json(include={*parts, "controller"})
-    )
-
-
-@lru_cache(maxsize=8)
-def _solved(text: str) -> PostureSource:
-    case = TaskCase.model_validate_json(text)
-    arm, (one,) = robot_of_list(case), case.phase
-    frames = list(one.tracks)
-    first, *others = (one.tracks[frame] for frame in frames)
-    if not isinstance(first, Track) or any(isinstance(other, Track) for other in others):
-        raise ConfigError(
-            "tracks: the first frame has a motion, and the others are 'posture', since one posture goes with one"
-            f" motion; got {frames}"
-        )
-    for frame in frames:
-        arm.frame_id(frame)
-    position, rotation = _motion(first, arm, frames[0])
-    motion = FrameMotion(frames[0], position, rotation).eased(first.ramp)
-    nominal = None if first.nominal is None else arm.vector(np.radians(first.nominal), "nominal")
-    options = PostureOptions(tolerance=np.inf if first.beyond_reach else 1e-3)
-    return posture_source(arm, motion, frames[1:], one.longest, nominal, options)
-
-
-def _motion(track: Track, robot: Robot, frame: str) -> tuple[Trajectory, Array]:
-    """Position over time, and R_world_frame that is held."""
-    home, turned = robot.placement(robot.home, frame)
-    rotation = turned if track.z_axis is None else frame_with_z_along(track.z_axis)
-    z = rotation[:, 2]
-    level = np.array([0.0, 0.0, 1.0]) if abs(z[2]) <= 0.9 else rotation[:, 0]
-    up = level - (level @ z) * z if track.up is None else np.array(track.up)
-    across = np.cross(up, z) if track.across is None else np.array(track.across)
-    centre = home if track.at is None else np.array(track.at)
-    if track.shape == "lemniscate":
-        return lemniscate(track.period, centre, *track.size, across, up), rotation
-    if track.shape == "line":
-        return sine_line(track.size[0], track.peak_speed, centre, across), rotation
-    return Hold(centre), rotation

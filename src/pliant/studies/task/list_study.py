@@ -28,13 +28,6 @@ class ListStudy(TaskStudy):
     def metrics(self, config: TaskCase, log: Log) -> tuple[Metric, ...]:
         return measured_list(config, listed(config), log)
 
-    def verdict(self, config: TaskCase, metrics: Sequence[Metric]) -> str | None:
-        allowed = config.limits.force
-        peak = next((metric.value for metric in metrics if metric.name == "force_peak"), 0.0)
-        if allowed is not None and peak > allowed:
-            return f"the force limit was passed: {peak:.3g} N, limits.force allows {allowed:g} N"
-        return None
-
     def searched(self, config: TaskCase) -> Searched:
         made = listed(config)
         return Searched(made.robot, made.believed)
