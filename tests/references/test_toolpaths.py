@@ -66,7 +66,7 @@ def test_rounded_corners_are_tangent_arcs_of_the_asked_radius() -> None:
 
 def test_pace_of_a_straight_line_is_a_trapezoid() -> None:
     points = np.column_stack([np.linspace(0.0, 0.1, 2001), np.zeros((2001, 2))])
-    times = pace(points, 0.05, 0.5)
+    times = pace(points, 0.05, 0.5).times
     assert times[-1] == pytest.approx(0.1 / 0.05 + 0.05 / 0.5, rel=1e-3)  # distance at speed, plus one ramp's time
     speed = np.diff(points[:, 0]) / np.diff(times)
     assert speed[1000] == pytest.approx(0.05)
@@ -76,15 +76,26 @@ def test_pace_of_a_straight_line_is_a_trapezoid() -> None:
 def test_pace_stops_where_the_way_turns_back() -> None:
     x = np.concatenate([np.linspace(0.0, 0.1, 501), np.linspace(0.1, 0.0, 501)[1:]])
     points = np.column_stack([x, np.zeros((1001, 2))])
-    times = pace(points, 0.05, 0.5)
+    times = pace(points, 0.05, 0.5).times
     speed = np.linalg.norm(np.diff(points, axis=0), axis=1) / np.diff(times)
     assert speed[500] < 0.02
     assert speed[250] == pytest.approx(0.05)
 
 
-@settings(max_examples=10, deadline=None)
+@st.composite
+def surfaces(draw: st.DrawFn) -> SurfaceGeometry:
+    """Any plane, or a cylinder or sphere whose solid is convex or hollow, anywhere, turned in any way."""
+    place = np.array(draw(st.tuples(*[st.floats(-1.0, 1.0)] * 3)))
+    turned = exp3(draw(st.tuples(*[st.floats(-1.8, 1.8)] * 3)))
+    kind, radius, hollow = draw(st.integers(0, 2)), draw(st.floats(0.15, 0.5)), draw(st.booleans())
+    if kind == 0:
+        return PlaneSurface(place, turned)
+    return (CylinderSurface if kind == 1 else SphereSurface)(place, turned, radius, hollow)
+
+
+@settings(max_examples=15, deadline=None)
 @given(
-    st.sampled_from(SURFACES),
+    surfaces(),
     st.sampled_from(sorted(PATTERNS)),
     st.floats(0.03, 0.12),
     st.floats(0.02, 0.15),
@@ -98,7 +109,11 @@ def test_any_pattern_on_any_surface(
     path = laid(surface, PATTERNS[pattern]((size, 0.7 * size), 0.25 * size, 1.0), motion)
     h = 2e-3
     rng = np.random.default_rng(0)
-    for time in rng.uniform(0.0, path.duration - h, 150):
+    for end, into in ((0.0, 1.0), (path.duration, -1.0)):  # from rest to rest, in no hurry
+        assert np.linalg.norm(path.position.at(end).rate) < 1e-9
+        assert np.linalg.norm(path.rotation.at(end).velocity) < 1e-9
+        assert np.linalg.norm(path.position.at(end + 5e-3 * into).rate) < 5e-3 * 0.5 * 1.3
+    for time in rng.uniform(0.0, path.duration - h, 100):
         now, after = path.position.at(time), path.position.at(time + h)
         here, there = surface.near(now.value), surface.near(after.value)
         assert here.distance == pytest.approx(0.015, abs=3e-5)

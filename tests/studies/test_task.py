@@ -5,19 +5,24 @@ from __future__ import annotations
 import itertools
 import json
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from pliant.cli.app import app
 from pliant.configuration import merged
 from pliant.experiments.runner import run_case
+from pliant.spatial import exp3
 from pliant.studies.task.build import planned
-from pliant.studies.task.measure import MEASURES, Signals, measured
+from pliant.studies.task.measure import MEASURES, Signals, measured, signals_of
 from pliant.studies.task.study import study_of
 from pliant.studies.task.world import true_surface
+from pliant.surfaces import SphereSurface
 from pliant.telemetry import Log
 from pliant.telemetry.output import output_folder
 
@@ -64,6 +69,58 @@ def test_metrics_on_ten_samples() -> None:
     assert measured(signals(following=np.zeros(10, dtype=bool)), {}) == ()
 
 
+@dataclass
+class Written:
+    """A log of signals that are told."""
+
+    values: dict[str, np.ndarray]
+    ends: float
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.values[name]
+
+    def time(self, name: str) -> np.ndarray:
+        return np.arange(len(self.values[name])) * 0.1
+
+    def phases(self) -> list[tuple[float, str]]:
+        return [(0.0, "press"), (0.2, "follow"), (self.ends, "release")]
+
+
+@given(
+    tilt=st.floats(5.0, 20.0),
+    turned=st.floats(0.0, 2 * math.pi),
+    force=st.floats(5.0, 40.0),
+    radius=st.floats(0.1, 1.0),
+)
+@settings(max_examples=30, deadline=None)
+def test_metrics_are_along_the_true_normal_and_in_its_tangent_plane(
+    tilt: float, turned: float, force: float, radius: float
+) -> None:
+    """On a sphere whose top is tilted away from the believed normal z: pressed by the asked force along the true
+    normal, off the path along that normal alone, there is no error; read along the believed one there is."""
+    rng = np.random.default_rng(0)
+    axis = np.array([math.cos(turned), math.sin(turned), 0.0])
+    surface = SphereSurface(np.zeros(3), np.eye(3), radius)
+    places = np.array([exp3(math.radians(tilt + wobble) * axis)[:, 2] for wobble in rng.uniform(-1.0, 1.0, 12)])
+    wrench = np.hstack([force * places, rng.standard_normal((12, 3))])
+    log = Written(
+        {
+            "truth/tool/wrench": wrench,
+            "truth/tool/position": radius * places + 2e-3 * places,
+            "reference/tool/position": radius * places,
+            "reference/tool/wrench": np.tile([0.0, 0.0, force, 0.0, 0.0, 0.0], (12, 1)),
+            "command/torque": np.zeros((12, 2)),
+        },
+        ends=1.0,
+    )
+    found = signals_of(log, "tool", surface, np.ones(2))  # type: ignore[arg-type]
+    metrics = {metric.name: metric.value for metric in measured(found, {})}
+    assert metrics["force_error_max"] < 1e-9
+    assert metrics["path_error_max"] < 1e-9
+    assert abs(wrench[:, 2] - force).min() > 1e-3 * force  # as the believed normal would have it
+    assert found.following.sum() == 8
+
+
 def test_every_row_of_a_sweep_says_what_it_changes(tmp_path: Path) -> None:
     path = tmp_path / "t.toml"
     path.write_text(
@@ -84,7 +141,7 @@ def test_a_user_begins_a_task_runs_it_and_compares_controllers(tmp_path: Path, m
         study_of(f"{pattern}.toml")
     assert CLI.invoke(app, ["new", "task", "raster", "-o", "raster.toml"]).exit_code == 2  # nothing is overwritten
     sets = ["--set", "path.time=0.2", "--set", "phases.stand_off=0.01", "--set", "phases.press=0.1"]
-    sets += ["--set", "phases.leave=0.1", "--set", "surface.pose.xyz=[0.55,0.0,0.1]"]
+    sets += ["--set", "phases.release=0.05", "--set", "phases.leave=0.1", "--set", "surface.pose.xyz=[0.55,0.0,0.1]"]
     done = CLI.invoke(
         app, ["compare", "hold.toml", "--controllers", "offset-free-mpc,haptic", "--seeds", "1", "--out", "o", *sets]
     )

@@ -1,4 +1,5 @@
-"""A tool that goes down to a surface, presses, follows a path and leaves: the phases of such a task, with its posture.
+"""A tool that goes down to a surface, presses, follows a path, lets go and leaves: the phases of such a task, with its
+posture.
 
 The surface is the believed one. Contact is looked for along its normal; where it is found, the whole path is lifted or
 lowered along the normal by that much. Position, orientation, task axes and the desired force turn with the normal, in
@@ -37,7 +38,7 @@ class SurfaceTaskSettings:
     """What comes before and after the path, and how the arm goes with it.
 
     Raises:
-        ConfigError: on construction, when a value is not above zero, or names are not four different ones.
+        ConfigError: on construction, when a value is not above zero, or names are not five different ones.
     """
 
     stand_off: float = 0.05
@@ -48,27 +49,29 @@ class SurfaceTaskSettings:
     """m above and below the believed surface within which contact is looked for"""
     press: float = 0.5
     """s in which the first force of the path is reached"""
+    release: float = 0.2
+    """s in which the last force of the path goes to zero, at its last place"""
     leave: float = 0.5
     """s in which the tool is lifted at the end"""
     spins: bool = False
     """whether the tool may turn about its own axis: what suits the arm; else its x axis follows the path's heading"""
     period: float = 0.04
     """s between samples of the posture"""
-    names: tuple[str, str, str, str] = ("approach", "press", "follow", "leave")
+    names: tuple[str, str, str, str, str] = ("approach", "press", "follow", "release", "leave")
     """of the phases"""
 
     def __post_init__(self) -> None:
-        for name in ("stand_off", "approach_speed", "search", "press", "leave", "period"):
+        for name in ("stand_off", "approach_speed", "search", "press", "release", "leave", "period"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise ConfigError(f"{name} of a task on a surface must be above zero, got {value}")
-        if len(set(self.names)) != 4:
-            raise ConfigError(f"a task on a surface has four phases of different names, got {list(self.names)}")
+        if len(set(self.names)) != 5:
+            raise ConfigError(f"a task on a surface has five phases of different names, got {list(self.names)}")
 
     @property
     def touches(self) -> Mapping[str, bool]:
         """Name of each phase → whether the tool touches in it."""
-        return dict(zip(self.names, (False, True, True, False), strict=True))
+        return dict(zip(self.names, (False, True, True, True, False), strict=True))
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,7 @@ def surface_task(
     settings: SurfaceTaskSettings | None = None,
     nominal: npt.ArrayLike | None = None,
 ) -> SurfaceTask:
-    """The phases approach → press → follow → leave of a path, with a posture on one branch along all of it.
+    """The phases approach → press → follow → release → leave of a path, with a posture on one branch along all of it.
 
     Args:
         robot: as it is believed.
@@ -138,18 +141,20 @@ def surface_task(
     rise = Waypoints([0.0, chosen.leave], [last, last + chosen.stand_off * R_last[:, 2]])
     posture = path_posture(robot, frame, path, descent, landing, rise, chosen.spins, chosen.period, nominal)
     pressing = path.force if path.force is not None else force.along(path)
+    fading = Waypoints([0.0, chosen.release], [[float(pressing.at(path.duration).value[0])], [0.0]])
     reach = Waypoints([0.0, chosen.press], [[0.0], [float(pressing.at(0.0).value[0])]])
     at_first, at_last = Fixed(R_first), Fixed(R_last)
-    axes = (at_first, at_first, path.task, at_last)
+    axes = (at_first, at_first, path.task, at_last, at_last)
     found = zip(chosen.names, axes, posture.rotations, posture.postures, strict=True)
-    approach, press, follow, leave = (
+    approach, press, follow, release, leave = (
         partial(TaskPhase, name, axes=task, rotation=R, posture=q) for name, task, R, q in found
     )
     phases = (
         approach(descent, ends_on_contact=True, patience=descent.duration + _WAIT, within=chosen.search),
         press(Hold(first), "surface", Pressing(reach, at_first), chosen.press, touches=True),
         follow(path.position, "surface", Pressing(pressing, path.task), path.duration, touches=True),
+        release(Hold(last), "surface", Pressing(fading, at_last), chosen.release, touches=True),
         leave(rise, "surface"),
     )
-    begins = np.cumsum([0.0, landing, chosen.press, path.duration]).tolist()
+    begins = np.cumsum([0.0, landing, chosen.press, path.duration, chosen.release]).tolist()
     return SurfaceTask(robot, frame, phases, posture, dict(zip(chosen.names, begins, strict=True)))

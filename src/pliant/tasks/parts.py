@@ -173,6 +173,7 @@ class Phases(Config):
         0.03, "m", "above and below the believed surface, where contact is looked for", gt=0.0, le=0.5
     )
     press: float = quantity(0.5, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
+    release: float = quantity(0.2, "s", "in which the last force goes to zero, at rest", gt=0.0, le=60.0)
     leave: float = quantity(0.5, "s", "in which the tool is lifted by stand_off at the end", gt=0.0, le=60.0)
 
 

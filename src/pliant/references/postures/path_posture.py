@@ -23,13 +23,13 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True)
 class PathPosture:
-    """Posture and orientation of the four phases of a task on a surface, each on the clock of its phase."""
+    """Posture and orientation of the five phases of a task on a surface, each on the clock of its phase."""
 
     solved: PosturePath
     """of the whole: down to the believed surface, along the path, away from it"""
-    postures: tuple[Trajectory, Trajectory, Trajectory, Trajectory]
-    """(n,) rad: approach, press, follow, leave"""
-    rotations: tuple[Turning, Turning, Turning, Turning]
+    postures: tuple[Trajectory, Trajectory, Trajectory, Trajectory, Trajectory]
+    """(n,) rad: approach, press, follow, release, leave"""
+    rotations: tuple[Turning, Turning, Turning, Turning, Turning]
     """R_world_frame"""
 
     @property
@@ -70,15 +70,15 @@ def path_posture(
     solved = solve_posture(robot, motion, ends[-1], nominal, PostureOptions(period=period, spins=spins))
     whole = Spline(solved.times, solved.postures)
     _, landed, end, gone = ends
-    spans = ((0.0, landed), (landed, landed), (landed, end), (end, gone))
+    spans = ((0.0, landed), (landed, landed), (landed, end), (end, end), (end, gone))
     postures = tuple(Excerpt(whole, *span) for span in spans)
     if spins:
         turning: Turning = _as_solved(robot, frame, solved)
         rotations = tuple(TurningExcerpt(turning, *span) for span in spans)
     else:
         T = path.duration
-        rotations = tuple(TurningExcerpt(path.rotation, *span) for span in ((0, 0), (0, 0), (0, T), (T, T)))
-    return PathPosture(solved, postures, rotations)  # pyright: ignore[reportArgumentType]  # four of each
+        rotations = tuple(TurningExcerpt(path.rotation, *span) for span in ((0, 0), (0, 0), (0, T), (T, T), (T, T)))
+    return PathPosture(solved, postures, rotations)  # pyright: ignore[reportArgumentType]  # five of each
 
 
 def _instants(seconds: float, period: float) -> Array:

@@ -3,16 +3,40 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from pliant.spatial import Array
 
+_STILL = 1e-12  # m/s
 _SHARP = 0.3  # rad between two steps: the way turns back or has a corner, where only standing still is slow enough
 
 
-def pace(points: Array, speed: Array | float, acceleration: float) -> Array:
-    """Times at which the points of a path are passed.
+class Pace(NamedTuple):
+    """When the points of a path are passed, and how fast."""
+
+    times: Array
+    """(k,) s, from zero"""
+    way: Array
+    """(k,) m, to each point"""
+    speeds: Array
+    """(k,) m/s at each point"""
+
+    def way_at(self, times: Array) -> Array:
+        """(m,) m of the way that are done at times in s: from point to point the acceleration is constant, and where
+        both are standstills the way is sped up half of it and slowed down the other half."""
+        i = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
+        span, length = self.times[i + 1] - self.times[i], self.way[i + 1] - self.way[i]
+        u = np.clip((times - self.times[i]) / span, 0.0, 1.0)
+        still = self.speeds[i] + self.speeds[i + 1] < _STILL
+        stop_to_stop = length * np.where(u < 0.5, 2.0 * u * u, 1.0 - 2.0 * (1.0 - u) ** 2)
+        from_speed = span * u * (self.speeds[i] + 0.5 * u * (self.speeds[i + 1] - self.speeds[i]))
+        return self.way[i] + np.where(still, stop_to_stop, from_speed)
+
+
+def pace(points: Array, speed: Array | float, acceleration: float) -> Pace:
+    """When the points of a path are passed, from rest to rest.
 
     Along the path the speed changes by at most `acceleration`, and in bends v² κ stays below it, so the whole
     acceleration stays below √2 times the limit.
@@ -22,8 +46,6 @@ def pace(points: Array, speed: Array | float, acceleration: float) -> Array:
         speed: m/s, one or one per point.
         acceleration: m/s².
 
-    Returns:
-        (k,) s, from zero.
     """
     steps = np.diff(points, axis=0)
     ds = np.linalg.norm(steps, axis=1)
@@ -40,9 +62,13 @@ def pace(points: Array, speed: Array | float, acceleration: float) -> Array:
     v = np.sqrt(square)
     # constant acceleration over each step; between two standstills up to the middle and down again
     mean = 0.5 * (v[1:] + v[:-1])
-    still = mean < 1e-12
+    still = mean < _STILL
     dt = np.where(still, 2.0 * np.sqrt(ds / acceleration), ds / np.where(still, 1.0, mean))
-    return np.concatenate([[0.0], np.cumsum(dt)])
+    return Pace(_sums(dt), _sums(ds), v)
+
+
+def _sums(parts: Array) -> Array:
+    return np.concatenate([[0.0], np.cumsum(parts)])
 
 
 def _in_bends(steps: Array, ds: Array, acceleration: float) -> Array:

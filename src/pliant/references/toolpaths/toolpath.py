@@ -49,7 +49,7 @@ class PathMotion:
 
 @dataclass(frozen=True)
 class Toolpath:
-    """A path on a surface over time. Before its start and after its end the ends are held."""
+    """A path on a surface over time, from rest to rest. Before its start and after its end the ends are held."""
 
     times: Array
     """(k,) s of the knots"""
@@ -155,24 +155,24 @@ def timed(places: Array, normals: Array, speed: Array, motion: PathMotion, headi
     places, normals, speed = places[moved], normals[moved], speed[moved]
     if len(places) < 3:
         raise ConfigError("a path needs a length: all its points lie in one place")
-    instants = pace(places, speed, motion.acceleration)
-    times = np.linspace(0.0, instants[-1], max(math.ceil(instants[-1] / _KNOT), 4) + 1)
+    run = pace(places, speed, motion.acceleration)
+    times = np.linspace(0.0, run.times[-1], max(math.ceil(run.times[-1] / _KNOT), 4) + 1)
+    done = run.way_at(times)
 
     def at(values: Array) -> Array:
-        return np.column_stack([np.interp(times, instants, column) for column in values.T])
+        return np.column_stack([np.interp(done, run.way, column) for column in values.T])
 
     knots, upright = at(places), at(normals)
     upright = upright / np.linalg.norm(upright, axis=1, keepdims=True)
-    way = _way(places)
     rotations = tool_rotations(knots, upright, heading, motion.tilt, motion.lean)
     return Toolpath(
         times,
         knots,
         upright,
-        Spline(times, knots + motion.lift * upright),
-        QuaternionSpline(times, np.array([quaternion(R) for R in rotations])),
-        QuaternionSpline(times, np.array([quaternion(R) for R in task_rotations(upright, heading)])),
-        Spline(times, at(way[:, None] / way[-1])),
+        Spline(times, knots + motion.lift * upright, rests=True),
+        QuaternionSpline(times, np.array([quaternion(R) for R in rotations]), rests=True),
+        QuaternionSpline(times, np.array([quaternion(R) for R in task_rotations(upright, heading)]), rests=True),
+        Spline(times, done[:, None] / run.way[-1], rests=True),
     )
 
 

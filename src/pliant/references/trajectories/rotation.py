@@ -75,13 +75,14 @@ class QuaternionSpline(Turning):
     Args:
         times: (m,) s, increasing.
         quaternions: (m, 4), scalar first, any length above zero and either sign.
+        rests: whether it begins and ends at rest.
     """
 
-    def __init__(self, times: Array, quaternions: Array) -> None:
+    def __init__(self, times: Array, quaternions: Array, rests: bool = False) -> None:
         unit = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
         turns = np.concatenate([[1.0], np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0.0, -1.0, 1.0)])
         # q and −q are one rotation: take the sign that keeps the path short
-        self._spline = Spline(times, unit * np.cumprod(turns)[:, None])
+        self._spline = Spline(times, unit * np.cumprod(turns)[:, None], rests)
 
     def at(self, time: float) -> Orientation:
         q, q_dot, q_ddot = self._spline.at(time)

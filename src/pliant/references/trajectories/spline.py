@@ -11,17 +11,19 @@ from pliant.spatial import Array
 
 
 class Spline(Trajectory):
-    """The cubic spline through samples. Its end slopes are those of the cubics through the first and last four samples.
+    """The cubic spline through samples. Its end slopes are those of the cubics through the first and last four samples,
+    or zero.
 
     Before the first sample the first value is held, after the last one the last.
 
     Args:
         times: (m,) s, increasing, m ≥ 2.
         values: (m, k).
+        rests: whether it begins and ends at rest.
     """
 
-    def __init__(self, times: Array, values: Array) -> None:
-        slopes = _spline_slopes(times, values)
+    def __init__(self, times: Array, values: Array, rests: bool = False) -> None:
+        slopes = _spline_slopes(times, values, rests)
         h = np.diff(times)[:, None]
         chord = np.diff(values, axis=0) / h
         c_2 = (3.0 * chord - 2.0 * slopes[:-1] - slopes[1:]) / h
@@ -62,16 +64,18 @@ def _with_derivatives(c_0: Array, c_1: Array, c_2: Array, c_3: Array) -> Array:
     return np.concatenate([value, rate, acceleration], axis=2)
 
 
-def _spline_slopes(times: Array, values: Array) -> Array:
+def _spline_slopes(times: Array, values: Array, rests: bool) -> Array:
     """Slopes (m, k) at the samples that make the second derivative continuous (tridiagonal system, ends given)."""
     count = times.shape[0]
     if count == 2:
+        if rests:
+            return np.zeros_like(values)
         return np.repeat(np.diff(values, axis=0) / np.diff(times)[:, None], 2, axis=0)
     h = np.diff(times)
     chord = np.diff(values, axis=0) / h[:, None]
     slopes = np.empty_like(values)
-    slopes[0] = _end_slope(times[:4], values[:4])
-    slopes[-1] = _end_slope(times[-1:-5:-1], values[-1:-5:-1])
+    slopes[0] = 0.0 if rests else _end_slope(times[:4], values[:4])
+    slopes[-1] = 0.0 if rests else _end_slope(times[-1:-5:-1], values[-1:-5:-1])
     # h_i d_{i-1} + 2 (h_{i-1} + h_i) d_i + h_{i-1} d_{i+1} = 3 (h_i c_{i-1} + h_{i-1} c_i), eliminated forwards
     right = 3.0 * (h[1:, None] * chord[:-1] + h[:-1, None] * chord[1:])
     right[0] -= h[1] * slopes[0]

@@ -55,10 +55,7 @@ def planned(case: TaskCase) -> Planned:
 def _planned(text: str) -> Planned:
     case = TaskCase.model_validate_json(text)
     robot, surface, path = laid_out(case, case.robot)
-    phases = case.phases
-    settings = SurfaceTaskSettings(
-        phases.stand_off, phases.approach_speed, phases.search, phases.press, phases.leave, case.path.spins
-    )
+    settings = SurfaceTaskSettings(**case.phases.model_dump(), spins=case.path.spins)
     _refuse(case, path)
     references = surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
     return Planned(robot, surface, path, references)
