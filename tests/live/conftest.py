@@ -7,6 +7,7 @@ import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -110,12 +111,34 @@ class Live:
             self.tab.screenshot(path=Path(folder) / f"live_{name}.png")
 
 
+def drag(live: Live, label: str, share: float) -> None:
+    """Drags the thumb of a slider with the mouse. Args: label: how it begins; share: of the track, from the left."""
+    text = live.tab.locator("label", has_text=label).first
+    slider = text.locator("xpath=following::*[@role='slider'][1]")
+    slider.wait_for()
+    here = slider.bounding_box()
+    track = slider.locator("xpath=..").bounding_box()
+    assert here is not None
+    assert track is not None
+    mouse, y = live.tab.mouse, here["y"] + here["height"] / 2
+    mouse.move(here["x"] + here["width"] / 2, y)
+    mouse.down()
+    mouse.move(track["x"] + share * track["width"], y, steps=3)
+    mouse.up()
+
+
 @pytest.fixture(scope="module")
 def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
     """One page for the tests of a module; every test leaves it playing."""
-    folder = tmp_path_factory.mktemp("logs")
+    with served(browser, tmp_path_factory.mktemp("logs"), "stack", wall_case()) as made:
+        yield made
+
+
+@contextmanager
+def served(browser: Browser, folder: Path, study: str, case: CaseConfig) -> Iterator[Live]:
+    """A page that shows a case, from its first samples on."""
     with PageServer("127.0.0.1", 0) as server, live_page(server, folder) as page:
-        page.run.start("stack", wall_case())
+        page.run.start(study, case)
         thread = threading.Thread(target=page.serve, daemon=True)
         thread.start()
         tab = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=pixels())

@@ -12,25 +12,9 @@ from pliant.live.page.logged_scene import LoggedScene
 from pliant.live.page.replay import ReplayPage
 from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
-from tests.live.conftest import PATIENCE, Live, pixels, until
+from tests.live.conftest import PATIENCE, Live, drag, pixels, until
 
 pytestmark = pytest.mark.study
-
-
-def drag(live: Live, label: str, share: float) -> None:
-    """Drags the thumb of a slider with the mouse. Args: label: how it begins; share: of the track, from the left."""
-    text = live.tab.locator("label", has_text=label).first
-    slider = text.locator("xpath=following::*[@role='slider'][1]")
-    slider.wait_for()
-    here = slider.bounding_box()
-    track = slider.locator("xpath=..").bounding_box()
-    assert here is not None
-    assert track is not None
-    mouse, y = live.tab.mouse, here["y"] + here["height"] / 2
-    mouse.move(here["x"] + here["width"] / 2, y)
-    mouse.down()
-    mouse.move(track["x"] + share * track["width"], y, steps=3)
-    mouse.up()
 
 
 def test_the_page_loads_without_errors(live: Live) -> None:

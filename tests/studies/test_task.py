@@ -210,7 +210,7 @@ def test_the_force_follows_the_normal_that_is_felt(tmp_path: Path) -> None:
         made = planned(case)
         true = true_surface(case, made.surface, made.path).geometry.normal(log["truth/tool/position"][-1])
         ends = {name: start for start, name in log.phases()}
-        late = (time > 0.5 * (ends["follow"] + ends["leave"])) & (time < ends["leave"])
+        late = (time > 0.5 * (ends["follow"] + ends["release"])) & (time < ends["release"])
         errors[along] = float(np.abs(wrench[late] @ true - 20.0).mean())
         if along == "estimated":
             felt = log["surface/normal"][-1]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Self
+from dataclasses import dataclass
+from typing import Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -19,6 +20,18 @@ MOST_STEPS = 10**8
 
 MOST_STEPS_PER_PERIOD = 1000
 """of the physics: between two commands; a run with more of them does not end while anyone waits"""
+
+
+@dataclass(frozen=True)
+class Dial:
+    """Something of a task that a person may turn while it runs, by a factor."""
+
+    name: Literal["force", "speed"]
+    unit: str
+    value: float
+    """as the task asks for it; above zero"""
+    high: float
+    """what its limits allow"""
 
 
 class CaseConfig(Config):
@@ -70,6 +83,11 @@ class CaseConfig(Config):
     def windows(self) -> Mapping[str, tuple[float, float]]:
         """What is measured → s, begin and end of the time in which it is; see `check_windows`."""
         return {}
+
+    @property
+    def dials(self) -> tuple[Dial, ...]:
+        """What of the task may be turned while it runs."""
+        return ()
 
     @model_validator(mode="after")
     def _comes_to_an_end(self) -> Self:

@@ -64,6 +64,16 @@ class Aim:
 
 
 @dataclass(frozen=True, slots=True)
+class Turned:
+    """How the page's sliders turned the task."""
+
+    force: float = 1.0
+    """factor on every desired wrench"""
+    speed: float = 1.0
+    """factor on how fast the task goes on; above zero"""
+
+
+@dataclass(frozen=True, slots=True)
 class Flow:
     """How simulated time passes."""
 
@@ -212,6 +222,6 @@ class Note(Queued):
 
 
 Message = (
-    Begin | Parameters | Surroundings | Flaws | Aim | Flow | StepOnce | PushNow | Pull | Record
+    Begin | Parameters | Surroundings | Flaws | Aim | Turned | Flow | StepOnce | PushNow | Pull | Record
     | Ready | Looks | Picture | Pulse | Samples | Note
 )  # fmt: skip

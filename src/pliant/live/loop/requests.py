@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from pliant.interfaces import Controller
-from pliant.live.link.messages import Aim, Pull
+from pliant.live.link.messages import Aim, Pull, Turned
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import Imperfections, Push, Scene
 from pliant.spatial import Array
@@ -27,6 +28,7 @@ class Wishes:
     controller: Controller[Any] | None = None
     """takes over from the one that runs; None: nobody does"""
     aim: Aim = field(default_factory=Aim)
+    turned: Turned = field(default_factory=Turned)
     scene: Scene | None = None
     """None: the one the plant was built with"""
     flaws: Imperfections | None = None
@@ -45,5 +47,7 @@ class Desk:
         """(frame, force in N, duration in s) that wait for the next period"""
         self.offset: Array = np.zeros(3)
         """(3,) m by which the first task's target is moved at present"""
+        self.clock = -math.inf
+        """s of the task: it goes faster or slower than that of the loop where the page turned its speed"""
         self.acting: tuple[Push, ...] = ()
         """pushes that act on the robot at present"""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -24,6 +24,7 @@ from pliant.live.link.messages import (
     Record,
     StepOnce,
     Surroundings,
+    Turned,
 )  # fmt: skip
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.recording import SwitchedRecorder
@@ -115,6 +116,13 @@ class Session:
         )
         self.watch.refresh(now=True)
 
+    def periods(self, seconds: float) -> Iterator[int]:
+        """One item a period until so many s of the task are done, however fast it goes."""
+        tick = 0
+        while tick == 0 or self.desk.clock < seconds - 1.5 * self.plant.period:
+            yield tick
+            tick += 1
+
     def obey(self, message: Message, pace: Pace) -> None:
         """Does what the page asks; what cannot be done is refused with the reason, and nothing changes."""
         try:
@@ -132,6 +140,8 @@ class Session:
                 pace.steps += message.periods
             case Aim():
                 self.desk.wishes = replace(wishes, aim=message)
+            case Turned():
+                self.desk.wishes = replace(wishes, turned=message)
             case Pull():
                 self.experiment.robot.frame_id(message.frame)
                 self.desk.wishes = replace(wishes, pull=message, pulled_at=time.monotonic())

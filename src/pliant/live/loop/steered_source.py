@@ -15,6 +15,7 @@ from pliant.references.exploration.haptic_exploration import HapticExploration
 from pliant.signals import Estimate, ImpedanceTuning, Preview, Reference, TaskReference
 from pliant.spatial import Array
 
+HURRY = 1.0  # 1/s: so fast may the speed of a task be turned
 TARGET_SPEED = 0.5  # m/s: a target that jumps would put energy into the robot that no ledger books
 
 
@@ -36,12 +37,17 @@ class SteeredState(NamedTuple):
     """s of the last step"""
     offset: Array
     """(3,) m"""
+    clock: float
+    """s of the task"""
+    rate: float = 1.0
+    """s of the task a second"""
 
 
 class SteeredSource(ReferenceSource[SteeredState]):
     """Another source's references with what the desk says: other tunings, another place, another force.
 
-    The place moves at `TARGET_SPEED` at most; tunings and force are swapped whole between two ticks.
+    The place moves at `TARGET_SPEED` at most; tunings and force are swapped whole between two ticks. Where the speed of
+    the task is turned, the source inside lives on a clock of its own, whose rate changes by `HURRY` at most.
 
     Args:
         inner: where the references come from.
@@ -52,12 +58,21 @@ class SteeredSource(ReferenceSource[SteeredState]):
         self.inner, self._desk = inner, desk
 
     def init(self, estimate: Estimate) -> SteeredState:
-        return SteeredState(self.inner.init(estimate), estimate.time, np.zeros(3))
+        return SteeredState(self.inner.init(estimate), estimate.time, np.zeros(3), estimate.time)
 
     def step(self, estimate: Estimate, state: SteeredState) -> tuple[Reference, SteeredState]:
-        reference, inner = self.inner.step(estimate, state.inner)
-        wishes = self._desk.wishes
-        shift = _moved(state.offset, np.array(wishes.aim.offset), estimate.time - state.time, wishes.aim.force_scale)
+        wishes, duration = self._desk.wishes, estimate.time - state.time
+        most = HURRY * max(duration, 0.0)
+        rate = state.rate + min(max(wishes.turned.speed - state.rate, -most), most)
+        real = state.rate == rate == 1.0 and state.clock == state.time
+        clock = estimate.time if real else state.clock + 0.5 * (state.rate + rate) * duration
+        reference, inner = self.inner.step(estimate if real else replace(estimate, time=clock), state.inner)
+        if not real:
+            bend = (rate - state.rate) / duration if duration > 0.0 else 0.0
+            reference = _on_clock(reference, estimate.time, rate, bend)
+        self._desk.clock = clock
+        force = wishes.aim.force_scale * wishes.turned.force
+        shift = _moved(state.offset, np.array(wishes.aim.offset), duration, force)
         self._desk.offset = shift.offset
         if wishes.tunings:
             reference = _retuned(reference, wishes.tunings)
@@ -65,7 +80,7 @@ class SteeredSource(ReferenceSource[SteeredState]):
             reference = replace(reference, tuning=wishes.whole)
         if reference.tasks and (shift.force_scale != 1.0 or np.any(shift.offset) or np.any(shift.velocity)):
             reference = _shifted(reference, shift)
-        return reference, SteeredState(inner, estimate.time, shift.offset)
+        return reference, SteeredState(inner, estimate.time, shift.offset, clock, rate)
 
 
 def steered(source: ReferenceSource[Any], desk: Desk) -> ReferenceSource[Any]:
@@ -85,6 +100,23 @@ def _moved(offset: Array, wanted: Array, duration: float, force_scale: float) ->
         return Shift(offset, np.zeros(3), force_scale)
     step = way * min(1.0, TARGET_SPEED * duration / distance)
     return Shift(wanted if distance <= TARGET_SPEED * duration else offset + step, step / duration, force_scale)
+
+
+def _on_clock(reference: Reference, time: float, rate: float, bend: float) -> Reference:
+    """What was said on a clock that goes at another rate (its derivative: bend, 1/s), at a time of the loop's."""
+    tasks = tuple(
+        replace(
+            task,
+            velocity=rate * task.velocity,
+            acceleration=rate * rate * task.acceleration + bend * task.velocity,
+        )
+        for task in reference.tasks
+    )
+    preview = reference.preview
+    if preview is not None:
+        times = time + (preview.time - reference.time) / rate
+        preview = replace(preview, time=times, velocity=rate * preview.velocity)
+    return replace(reference, time=time, tasks=tasks, preview=preview)
 
 
 def _retuned(reference: Reference, tunings: Mapping[str, ImpedanceTuning]) -> Reference:

@@ -63,12 +63,12 @@ class Worker:
         pace = Pace(session.plant.period, lambda: self._attend(session, pace), self._link.wait)
         pace.flow = replace(self._flow)
         session.observe(pace)
-        ticks = round(run_length(begin.config, session.experiment) / session.plant.period)
+        length = run_length(begin.config, session.experiment)
         wired = session.experiment
         observers = [session.recorder, session.watch]
         failure: str | None = None
         try:
-            failure = wired.run(pace(range(ticks)), observers).failure
+            failure = wired.run(pace(session.periods(length)), observers).failure
         except PliantError as error:
             failure = str(error)
         finally:

@@ -35,6 +35,7 @@ from pliant.live.page.ready import has_desired_force, task_frames
 from pliant.live.page.run_controls import RunControls
 from pliant.live.page.scene_view import SceneView
 from pliant.live.page.target import TargetControls
+from pliant.live.page.task_controls import TaskControls
 from pliant.live.page.world_form import SceneForm
 from pliant.live.server.web import PageServer
 from pliant.simulation import Imperfections
@@ -63,6 +64,7 @@ class Page:
         tabs = gui.add_tab_group()
         with tabs.add_tab("Run"):
             self.run = RunControls(self._viser, self.seat, link.send, folder)
+            self.task = TaskControls(self._viser, self.seat, link.send)
         self._tuning_tab = tabs.add_tab("Tune")
         with tabs.add_tab("Touch"):
             with gui.add_folder("Target"):
@@ -145,6 +147,7 @@ class Page:
         if shown != self._shown:
             self._shown, self._presses, self._framed = shown, False, False
             self.target.reset()
+            self.task.offer(ready.config.dials if ready.restarts else ())
             self._rebuild_forms(ready)
 
     def _draw(self, picture: Picture) -> None:
@@ -152,7 +155,7 @@ class Page:
             self._framed = True
             self.view.frame_camera(picture.tool)
         self.view.draw(picture)
-        self.target.follow(picture, self._presses)
+        self.target.follow(picture, self._presses and self._ready is not None and not self._ready.config.dials)
         at = picture.contacts.get(self.pushes.frame)
         pushed = picture.pushes.get(self.pushes.frame)
         self.pushes.follow(picture, at[0] if at else pushed[0] if pushed else None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from pydantic import Field
@@ -10,6 +11,7 @@ from pliant.configuration import merged
 from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
+from pliant.experiments.base_config import Dial
 from pliant.mpc.presets import PRESETS
 from pliant.references.surface_task import SurfaceTaskSettings
 from pliant.robot import Robot
@@ -41,6 +43,16 @@ class TaskCase(TaskParts, CaseConfig):
     @property
     def control_by_name(self) -> bool:
         return True
+
+    @property
+    def dials(self) -> tuple[Dial, ...]:
+        """Largest force, and the speed of a path; up to the limits, or to twice of it where there is none."""
+        wrenches = [one.wrench[:3] for one in self.phase if one.wrench is not None]
+        force = max((math.hypot(*wrench) for wrench in wrenches), default=0.0) if self.phase else self.force.largest
+        dials = [] if force == 0.0 else [Dial("force", "N", force, self.limits.force or 2.0 * force)]
+        if not self.phase:
+            dials.append(Dial("speed", "m/s", self.path.speed, self.limits.speed or 2.0 * self.path.speed))
+        return tuple(dials)
 
     @property
     def entry(self) -> ControllerEntry[Any]:
