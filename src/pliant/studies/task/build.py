@@ -17,8 +17,8 @@ from pliant.robot import Robot
 from pliant.simulation.seeding import generator
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import force_of, laid_out
-from pliant.studies.task.sensor import known_load
 from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
+from pliant.studies.task.sensor import known_load
 from pliant.studies.task.world import plant_of, true_surface
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.parts import Truth
