@@ -12,8 +12,8 @@ from pydantic import Field, model_validator
 
 from pliant.entries import ControllerConfig
 from pliant.mpc.costs import Costs, Phase
+from pliant.mpc.models import MODELS, Kind, PredictiveModel
 
-Kind = Literal["force_feedback", "classical", "torque_feedback", "free", "naive_viscoelastic"]
 Axes = Literal["local", "world", "surface"]
 
 
@@ -166,6 +166,11 @@ class MpcConfig(ControllerConfig):
         description="costs of each phase by name",
     )
 
+    @property
+    def predictive_model(self) -> PredictiveModel:
+        """What follows from `kind`."""
+        return MODELS[self.kind]
+
     @model_validator(mode="after")
     def _consistent(self) -> MpcConfig:
         for name, value in (("stiffness", self.contact.stiffness), ("damping", self.contact.damping)):
@@ -176,7 +181,7 @@ class MpcConfig(ControllerConfig):
         if self.bounds.friction is not None and self.contact.dimension == 1:
             raise ValueError("bounds.friction needs a contact of dimension 3 or 6, got 1")
         self._check_sliding()
-        if self.kind == "torque_feedback" and self.between == "riccati":
+        if self.predictive_model.torque_state and self.between == "riccati":
             raise ValueError("between = 'riccati' needs the torque as control; torque feedback filters it: use 'hold'")
         if self.between == "riccati" and (self.compensation.delay or self.compensation.averaging):
             raise ValueError("between = 'riccati' answers to the present state: with delays or averaging use 'hold'")
@@ -186,7 +191,7 @@ class MpcConfig(ControllerConfig):
         contact = self.contact
         if contact.friction is None:
             return
-        if self.kind != "force_feedback":
+        if not self.predictive_model.force_state:
             raise ValueError(
                 f"contact.friction is part of the model of kind 'force_feedback', got kind {self.kind!r}: leave it out,"
                 " or bound the force with bounds.friction"

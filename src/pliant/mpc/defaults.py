@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from pliant.mpc.config import Compensation, Contact, Kind, MpcConfig
+from pliant.mpc.config import Compensation, Contact, MpcConfig
 from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.models import Kind
 
 _PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from pliant import _mpc
 from pliant.mpc.compensation import Delays
-from pliant.mpc.config import Kind
+from pliant.mpc.models import Kind
 from pliant.mpc.problem import MpcProblem
 
 

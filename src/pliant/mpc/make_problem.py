@@ -63,7 +63,8 @@ def _bound(
 
 def _weights(config: MpcConfig, phase: str, nv: int, nu: int) -> dict[str, Array]:
     costs = config.phases[phase].over(config.costs)
-    m = 0 if config.kind == "free" else config.contact.dimension
+    model = config.predictive_model
+    m = config.contact.dimension if model.touches else 0
 
     def along(name: str, size: int, *, per_joint: bool = False) -> Array:
         term: Term = getattr(costs, name)
@@ -76,11 +77,11 @@ def _weights(config: MpcConfig, phase: str, nv: int, nu: int) -> dict[str, Array
         "rotation_weight": along("rotation", 3),
         "velocity_weight": along("velocity", 6),
     }
-    if config.kind == "torque_feedback":
+    if model.torque_state:
         table["control_gravity_weight"] = along("unfiltered_torque", nu, per_joint=True)
     if m:
         table["force_weight"] = along("force", m)
-    if config.kind == "force_feedback":
+    if model.force_state:
         table["force_rate_weight"] = along("force_rate", m)
     return table
 
@@ -88,7 +89,7 @@ def _weights(config: MpcConfig, phase: str, nv: int, nu: int) -> dict[str, Array
 def _check_contact_range(config: MpcConfig, model: pin.Model, posture: Array) -> float:
     """The sampled force state must be stable: see docs/mpc.md for the two conditions. Returns the largest stiffness
     along the normal for which it is."""
-    if config.kind != "force_feedback":
+    if not config.predictive_model.force_state:
         return math.inf
     contact, dt = config.contact, config.dt
     inertia = _task_inertia(config, model, posture)

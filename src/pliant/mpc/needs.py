@@ -27,11 +27,11 @@ def needs_of(config: MpcConfig) -> Needs:
     explained = "normal" if config.contact.dimension == 1 else "all"
     return Needs(
         preview=Lookahead(config.horizon, config.dt),
-        wrench=config.kind == "force_feedback",
+        wrench=config.predictive_model.force_state,
         disturbance=explained if compensation.disturbance else "none",
         environment=compensation.environment,
         calm=compensation.any,
-        torque=config.kind == "torque_feedback",
+        torque=config.predictive_model.torque_state,
         posture=config.posture == "reference",
     )
 

@@ -53,9 +53,10 @@ class NoisyLoop:
         pressing = self.problem.in_contact_axes(
             np.array([0.0, 0.0, _FORCE, 0.0, 0.0, 0.0]), self.problem.contact_axes(self._R, None)
         )
-        start = gravity if case.config.kind == "torque_feedback" else pressing
+        model = case.config.predictive_model
+        start = gravity if model.torque_state else pressing
         self.x = np.concatenate([case.robot.home, np.zeros(case.robot.n), start[:extra]])
-        noise = {"force_feedback": 0.01, "torque_feedback": 0.02}.get(case.config.kind, 0.0)  # N, N·m
+        noise = 0.01 if model.force_state else 0.02  # N, N·m
         self._noise = np.concatenate([np.full(2 * case.robot.n, 1e-3), np.full(extra, noise)])
         self.solver.quasi_static(self.x)
 

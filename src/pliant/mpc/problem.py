@@ -40,7 +40,7 @@ class MpcProblem:
     @property
     def m(self) -> int:
         """Dimension of the contact force; 0 in free motion."""
-        return 0 if self.config.kind == "free" else self.config.contact.dimension
+        return self.config.contact.dimension if self.config.predictive_model.touches else 0
 
     @property
     def nu(self) -> int:

@@ -48,7 +48,7 @@ def shooting_problem(
     bounds = problem.config.bounds
     if constraints and bounds.friction is not None:
         raise ConfigError("the crocoddyl bridge has torque and force bounds, but no friction cone")
-    if constraints and bounds.force_max is not None and problem.config.kind != "force_feedback":
+    if constraints and bounds.force_max is not None and not problem.config.predictive_model.force_state:
         raise ConfigError(
             "the crocoddyl bridge bounds the force only where it is a state (kind 'force_feedback'), got kind"
             f" {problem.config.kind!r} with force_max = {bounds.force_max:g} N: leave force_max out"
@@ -114,8 +114,8 @@ class _Bounds:
 
     def __init__(self, problem: MpcProblem, node: _mpc.Node | PinocchioNode, terminal: bool) -> None:
         p, nu, m = node.parameters, problem.nu, problem.m
-        forces = problem.config.kind == "force_feedback" and bool(p.contact_active[0])
-        ndx = 2 * problem.model.nv + {"force_feedback": m, "torque_feedback": nu}.get(problem.config.kind, 0)
+        forces = problem.config.predictive_model.force_state and bool(p.contact_active[0])
+        ndx = 2 * problem.model.nv + problem.config.predictive_model.extra(m, nu)
         rows_u = 0 if terminal else nu
         rows_x = m if forces else 0
         self.count = rows_u + rows_x

@@ -75,7 +75,7 @@ class PinocchioNode(NodeDynamics):
 
     def _step(self, q: Array, v: Array, e: Array, u: Array, d: Dynamics) -> tuple[Array, Array, Array]:
         """Semi-implicit Euler, [FFMPC] eq. 8, 14, 24."""
-        nv, dt, kind = self.model.nv, self.problem.config.dt, self.problem.config.kind
+        nv, dt, kind = self.model.nv, self.problem.config.dt, self.problem.config.predictive_model
         v_next = v + dt * d.acceleration
         v_x, v_u = dt * d.acceleration_x, dt * d.acceleration_u
         v_x[:, nv : 2 * nv] += np.eye(nv)
@@ -83,10 +83,10 @@ class PinocchioNode(NodeDynamics):
         q_x, q_u = dt * by_v @ v_x, dt * by_v @ v_u
         q_x[:, :nv] += by_q
         e_next, e_x, e_u = e, np.zeros((len(e), self.ndx)), np.zeros((len(e), self.nu))
-        if kind == "force_feedback":
+        if kind.force_state:
             e_next, e_x, e_u = e + dt * d.rate, dt * d.rate_x, dt * d.rate_u
             e_x[:, 2 * nv :] += np.eye(len(e))
-        elif kind == "torque_feedback":
+        elif kind.torque_state:
             alpha = math.exp(-2.0 * math.pi * self.problem.config.torque_bandwidth * dt)
             e_next = alpha * e + (1.0 - alpha) * u
             e_x[:, 2 * nv :], e_u = alpha * np.eye(len(e)), (1.0 - alpha) * np.eye(self.nu)
@@ -97,14 +97,14 @@ class PinocchioNode(NodeDynamics):
 
     def _residuals(self, q: Array, v: Array, e: Array, u: Array, d: Dynamics) -> list[Residual]:
         residuals = [self._state_residual(q, v), *self._placement_residuals(q, v)]
-        kind, p = self.problem.config.kind, self.parameters
+        kind, p = self.problem.config.predictive_model, self.parameters
         active = self.problem.m > 0 and bool(p.contact_active[0])
-        if active and (kind == "force_feedback" or not self.terminal):
+        if active and (kind.force_state or not self.terminal):
             residuals.append((d.force - p.force_reference[0], p.force_weight[0], d.force_x, d.force_u))
         if self.terminal:
             return residuals
         residuals += self._torque_residuals(q, e, u, d)
-        if active and kind == "force_feedback":
+        if active and kind.force_state:
             residuals.append((d.rate, p.force_rate_weight[0], d.rate_x, d.rate_u))
         return residuals
 
@@ -144,7 +144,7 @@ class PinocchioNode(NodeDynamics):
     def _torque_residuals(self, q: Array, e: Array, u: Array, d: Dynamics) -> list[Residual]:
         """τ − (g(q) − Jᵀλ), [FFMPC] eq. 25.3 and 28, and τ against its reference."""
         nv, p, driven = self.model.nv, self.parameters, list(self.problem.driven)
-        filtered = self.problem.config.kind == "torque_feedback"
+        filtered = self.problem.config.predictive_model.torque_state
         load, load_x = np.zeros(nv), np.zeros((nv, self.ndx))
         load_u = np.zeros((nv, self.nu))
         wrench = np.zeros(6)

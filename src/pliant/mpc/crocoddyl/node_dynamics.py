@@ -44,9 +44,9 @@ class NodeDynamics:
 
     def __init__(self, problem: MpcProblem, *, terminal: bool = False) -> None:
         contact = problem.config.contact
-        if problem.config.kind == "force_feedback" and contact.integrator != "euler":
+        if problem.config.predictive_model.force_state and contact.integrator != "euler":
             raise ConfigError("models in Python integrate the force with 'euler' only, got integrator = 'exponential'")
-        springy = contact.baumgarte[0] > 0.0 or problem.config.kind == "naive_viscoelastic"
+        springy = contact.baumgarte[0] > 0.0 or problem.config.predictive_model.springy
         if springy and problem.m == 6:
             raise ConfigError("models in Python have no contact spring in 6 dimensions: use dimension 1 or 3")
         self.problem, self.terminal = problem, terminal
@@ -56,7 +56,7 @@ class NodeDynamics:
         frame = self.model.getFrameId(problem.contact_frame)
         self._frame, self._rows = frame, rows
         self._tool = self.model.getFrameId(problem.config.frame)
-        extra = {"force_feedback": problem.m, "torque_feedback": problem.nu}.get(problem.config.kind, 0)
+        extra = problem.config.predictive_model.extra(problem.m, problem.nu)
         self.nx, self.ndx, self.nu = self.model.nq + self.model.nv + extra, 2 * self.model.nv + extra, problem.nu
         self._select = np.zeros((self.model.nv, self.nu))
         self._select[list(problem.driven), np.arange(self.nu)] = 1.0
@@ -68,15 +68,15 @@ class NodeDynamics:
         return ContactGeometry(self._frame, axes, self._rows, R)
 
     def dynamics(self, q: Array, v: Array, e: Array, u: Array) -> Dynamics:
-        kind, nv = self.problem.config.kind, self.model.nv
-        torque = e if kind == "torque_feedback" else u
+        kind, nv = self.problem.config.predictive_model, self.model.nv
+        torque = e if kind.torque_state else u
         torque_x, torque_u = np.zeros((nv, self.ndx)), self._select
-        if kind == "torque_feedback":
+        if kind.torque_state:
             torque_x[:, 2 * nv :], torque_u = self._select, np.zeros((nv, self.nu))
         drive = self._select @ torque
         if self.problem.m == 0 or not self.parameters.contact_active[0]:
             return self._without_contact(q, v, e, drive, torque_x, torque_u)
-        if kind in ("classical", "torque_feedback"):
+        if kind.rigid:
             return self._rigid(q, v, drive, torque_x, torque_u)
         return self._soft(q, v, e, drive, torque_x, torque_u)
 
@@ -89,7 +89,7 @@ class NodeDynamics:
         self._kinematics(q, v, a)
         a_x = M_inverse @ (torque_x - self._inverse_dynamics_x(q, v, a, np.zeros(6)))
         none_x, none_u, none = np.zeros((m, self.ndx)), np.zeros((m, self.nu)), np.zeros(m)
-        force = e if self.problem.config.kind == "force_feedback" else none  # a state that acts on nothing
+        force = e if self.problem.config.predictive_model.force_state else none  # a state that acts on nothing
         return Dynamics(a, a_x, M_inverse @ torque_u, force, none_x, none_u, none, none_x, none_u)
 
     def _rigid(self, q: Array, v: Array, drive: Array, torque_x: Array, torque_u: Array) -> Dynamics:
@@ -124,7 +124,7 @@ class NodeDynamics:
         self._kinematics(q, v, np.zeros(nv))
         still = self._contact.motion(self.model, self.data)
         force, force_x = e, np.zeros((self.problem.m, self.ndx))
-        if self.problem.config.kind == "force_feedback":
+        if self.problem.config.predictive_model.force_state:
             force_x[:, 2 * nv :] = np.eye(self.problem.m)
         else:
             deflection, deflection_q = self._deflection(still.J)
@@ -143,7 +143,7 @@ class NodeDynamics:
     def _force_rate(self, motion: ContactMotion, e: Array, a_x: Array, a_u: Array) -> tuple[Array, Array, Array]:
         """λ̇ and its derivatives, [FFMPC] eq. 18 and 23, with friction; zero where the force is no state."""
         nv, m = self.model.nv, self.problem.m
-        if self.problem.config.kind != "force_feedback":
+        if not self.problem.config.predictive_model.force_state:
             return np.zeros(m), np.zeros((m, self.ndx)), np.zeros((m, self.nu))
         K, B = self.parameters.stiffness[0], self.parameters.damping[0]
         velocity_x, acceleration_x = np.zeros((m, self.ndx)), motion.J @ a_x
