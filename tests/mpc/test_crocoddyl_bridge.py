@@ -97,7 +97,7 @@ def test_bounded_problem_agrees_with_csqp() -> None:
     xs, us = solver.xs, solver.us
     ours = solver.solve(x0, xs, us, max_iterations=30, tolerance=1e-6)
     csqp = mim_solvers.SolverCSQP(shooting_problem(problem, solver.nodes, x0, chain, constraints=True))
-    csqp.termination_tolerance, csqp.eps_abs, csqp.eps_rel, csqp.max_qp_iters = 1e-6, 1e-10, 0.0, 5000
+    csqp.termination_tolerance, csqp.eps_abs, csqp.eps_rel, csqp.max_qp_iters = 1e-6, 1e-10, 0.0, 20_000
     csqp.use_filter_line_search = True
     csqp.solve(list(xs), list(us), 30, False, REGULARISATION)
     theirs = np.array(csqp.us.tolist())

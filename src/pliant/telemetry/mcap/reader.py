@@ -30,13 +30,17 @@ _KEPT = 256 * 2**20  # bytes of unpacked chunks that stay in memory; of a longer
 
 @dataclass
 class _Chunk:
-    """A chunk of a file: unpacked, or as it came."""
+    """A chunk of a file: unpacked, or where it stands."""
 
-    packed: Chunk
-    data: bytes | None
+    file: bytes
+    start: int
+    end: int
+    data: bytes | None = None
 
     def unpacked(self) -> bytes:
-        return _unpacked(self.packed) if self.data is None else self.data
+        if self.data is not None:
+            return self.data
+        return _unpacked(Chunk.read(_stream(self.file, self.start, self.end)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,31 +114,32 @@ def read(name: str, data: bytes) -> Contents:
     with contextlib.suppress(Exception):  # whatever damaged bytes lead to: what was read until then counts
         for opcode, start, end in _records(data, len(_MAGIC)):
             if opcode == Opcode.CHUNK:
-                _take(found, Chunk.read(_stream(data, start, end)))
+                _take(found, _Chunk(data, start, end))
             elif opcode == Opcode.METADATA:
                 record = Metadata.read(_stream(data, start, end))
                 found.metadata[record.name] = record.metadata
             elif opcode == Opcode.DATA_END:
-                _check(DataEnd.read(_stream(data, start, end)).data_section_crc, data[: start - _RECORD.size])
+                record = DataEnd.read(_stream(data, start, end))
+                _check(record.data_section_crc, memoryview(data)[: start - _RECORD.size])
                 whole = True
             elif opcode == Opcode.FOOTER:
                 footer = Footer.read(_stream(data, start, end))
-                _check(footer.summary_crc, data[footer.summary_start : end - 4])
+                _check(footer.summary_crc, memoryview(data)[footer.summary_start : end - 4])
                 found.complete = whole and data[end:] == _MAGIC
                 break
     return found
 
 
-def _check(crc: int, data: bytes) -> None:
+def _check(crc: int, data: memoryview) -> None:
     if crc not in (0, zlib.crc32(data)):  # 0: the writer made none
         raise ValueError("the checksum does not fit the bytes")
 
 
-def _take(found: Contents, packed: Chunk) -> None:
+def _take(found: Contents, chunk: _Chunk) -> None:
     """Adds what a chunk holds: equally built rows at once, anything else message by message."""
-    data = _unpacked(packed)  # a damaged chunk gives nothing at all
+    data = chunk.unpacked()  # a damaged chunk gives nothing at all
     found.kept += len(data)
-    chunk, first = _Chunk(packed, data if found.kept <= _KEPT else None), True
+    chunk.data, first = data if found.kept <= _KEPT else None, True
     for opcode, start, end in _records(data, 0):
         if opcode == Opcode.MESSAGE:
             rows = _rows(chunk, data, start - _RECORD.size) if first else []
