@@ -70,15 +70,10 @@ def test_the_library_does_not_print() -> None:
 
 
 def imports_of(path: Path, modules: set[str]) -> set[str]:
-    """Modules that are imported when a file is: not for types alone, nor inside functions."""
+    """Modules that a file names in an import: at its head, for types alone, and inside functions."""
     found: set[str] = set()
-    waiting: list[ast.stmt] = list(ast.parse(path.read_text()).body)
-    while waiting:
-        statement = waiting.pop()
-        if isinstance(statement, ast.If | ast.Try):
-            typing_only = isinstance(statement, ast.If) and "TYPE_CHECKING" in ast.unparse(statement.test)
-            waiting += statement.orelse if typing_only else [*statement.body, *statement.orelse]
-        elif isinstance(statement, ast.Import):
+    for statement in ast.walk(ast.parse(path.read_text())):
+        if isinstance(statement, ast.Import):
             found |= {alias.name for alias in statement.names}
         elif isinstance(statement, ast.ImportFrom) and statement.module and not statement.level:
             for alias in statement.names:

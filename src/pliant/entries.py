@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
 from pliant.configuration import Config, merged
+from pliant.dotted import flat
 from pliant.errors import ConfigError, options
 from pliant.interfaces import Compensation, Controller, Needs, ReferenceSource
 from pliant.robot import Robot
@@ -137,14 +138,6 @@ class ControllerEntry(Generic[C]):
                 " (`pliant list controllers`)"
             )
         return made
-
-
-def flat(values: Mapping[str, Any], above: str = "") -> dict[str, Any]:
-    """Nested values under dotted keys."""
-    found: dict[str, Any] = {}
-    for key, value in values.items():
-        found |= flat(value, f"{above}{key}.") if isinstance(value, Mapping) else {f"{above}{key}": value}  # pyright: ignore[reportUnknownArgumentType]
-    return found
 
 
 def merged_entries(*tables: Mapping[str, ControllerEntry[Any]]) -> dict[str, ControllerEntry[Any]]:

@@ -16,7 +16,7 @@ import pytest
 from benchmarks.endings import server
 from pliant.errors import ConfigError, RunFailedError
 from pliant.experiments import cluster
-from pliant.experiments.pool import open_pool
+from pliant.experiments.open_pool import open_pool
 
 GREETINGS = {
     "silent": b"",

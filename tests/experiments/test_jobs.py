@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pliant.experiments.pool import open_pool
+from pliant.experiments.open_pool import open_pool
 from pliant.experiments.registry import get_study, study_names
 from pliant.experiments.results import Request
 from pliant.experiments.sweep import asked_runs, sweep

@@ -9,7 +9,8 @@ import pytest
 
 from pliant.errors import ConfigError, RunFailedError
 from pliant.experiments import workers
-from pliant.experiments.pool import Lost, in_this_process, open_pool
+from pliant.experiments.open_pool import open_pool
+from pliant.experiments.pool import Lost, in_this_process
 from tests.experiments.tasks import odd, work
 
 

@@ -18,8 +18,8 @@ from rich.console import Console
 
 from pliant.cli.study import resume_command
 from pliant.errors import ConfigError, OutputError, RunFailedError
+from pliant.experiments.open_pool import open_pool
 from pliant.experiments.parquet import read_parquet, write_parquet
-from pliant.experiments.pool import open_pool
 from tests.experiments.tasks import nap
 from tests.studies.commands import content, environment, rows, start, study
 

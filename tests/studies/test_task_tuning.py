@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from pliant.cli.app import app
 from pliant.errors import ConfigError
 from pliant.experiments.base import Result
-from pliant.experiments.tuning import find_tuning
+from pliant.experiments.search import find_tuning
 from pliant.studies.task.study import study_of
 from pliant.studies.task.tuning import FIRST_SEED, objective
 from pliant.telemetry.summary import Metric

@@ -10,10 +10,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from pliant.cli import tune
+from pliant.dotted import nested
 from pliant.errors import ConfigError
 from pliant.experiments.registry import get_study
-from pliant.experiments.search import Trial, search
-from pliant.experiments.tuning import PENALTY, Range, Tuning, find_tuning, nested
+from pliant.experiments.search import Trial, find_tuning, search
+from pliant.experiments.tuning import PENALTY, Range, Tuning
 from tests.studies import toy
 from tests.studies.commands import study
 
@@ -89,3 +90,11 @@ def test_what_only_got_the_penalty_is_drawn_as_failed(tmp_path: Path, monkeypatc
     made = [Trial(0, start, 2.0, 0), Trial(1, start, PENALTY, 0), Trial(2, start, 3.0, 1)]
     tune._draw(tuning, made, {"study": "toy", "controller": "idle"}, tmp_path / "x.png")
     np.testing.assert_array_equal(seen[0], [2.0, np.nan, np.nan])
+
+
+def test_changes_under_dots_and_in_tables_are_one_tree() -> None:
+    assert nested({"a.b": 1, "a": {"c": 2, "d.e": 3}}) == {"a": {"b": 1, "c": 2, "d.e": 3}}
+    assert nested({"a": {"c": 2}, "a.b": 1}) == {"a": {"c": 2, "b": 1}}
+    for twice in ({"a.b": 1, "a": {"b": 2}}, {"a": 1, "a.b": 2}, {"a.b": 1, "a": 2}):
+        with pytest.raises(ConfigError, match="given"):
+            nested(twice)

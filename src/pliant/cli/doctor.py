@@ -66,7 +66,7 @@ def doctor_command(console: Console, config: Path | None) -> None:
 
 
 def _check_config(console: Console, path: Path) -> None:
-    from pliant.cli.run import resolve
+    from pliant.cli.choose import resolve
 
     choice = resolve(str(path) if path.suffix == ".toml" else f"{path}.toml", None, {}, [])
     study, config = choice.study, choice.config

@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.console import Console
 
-from pliant.cli.run import resolve
+from pliant.cli.choose import resolve
 from pliant.errors import MissingExtraError
 
 DEFAULT_HOST, DEFAULT_PORT = "127.0.0.1", 8080

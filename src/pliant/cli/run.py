@@ -9,12 +9,11 @@ from typing import Any
 
 from rich.console import Console
 
+from pliant.cli.choose import default_folder, resolve
 from pliant.cli.progress import progress_bar
 from pliant.cli.report import print_results, save_summary
 from pliant.errors import RunFailedError
 from pliant.experiments.base import CaseConfig, Experiment, Study, check_windows
-from pliant.experiments.choice import Choice, chosen
-from pliant.experiments.config import assigned
 from pliant.experiments.origins import origins
 from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
@@ -111,18 +110,3 @@ def show_config(
     for cells in table:
         line = "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
         console.print(line.rstrip(), markup=False, highlight=False, soft_wrap=True)
-
-
-def resolve(target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]) -> Choice:
-    """The run that a user means on the command line. Raises ConfigError."""
-    return chosen(target, case, overrides, assigned(assignments), ("an option", "--set"))
-
-
-def default_folder(study: Study[Any], case: str) -> Path:
-    """Where a run writes if nobody says."""
-    return study_folder(study.name) / case
-
-
-def study_folder(name: str) -> Path:
-    """Where a study, or a task by the path of its file, writes if nobody says."""
-    return Path("pliant-out") / Path(name).stem

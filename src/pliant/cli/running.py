@@ -159,7 +159,7 @@ def compare(
     set_: Sets = None,
 ) -> None:
     """Runs one task with several controllers, on the same seeds, and puts them into one table."""
-    from pliant.cli.run import study_folder
+    from pliant.cli.choose import study_folder
     from pliant.cli.study import study_command
     from pliant.experiments.registry import get_study
     from pliant.experiments.results import Request

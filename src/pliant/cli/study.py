@@ -8,14 +8,14 @@ from typing import Any
 
 from rich.console import Console
 
+from pliant.cli.choose import study_folder
 from pliant.cli.paper_tables import paper_tables
 from pliant.cli.progress import count_bar
 from pliant.cli.report import print_results, save_summary
-from pliant.cli.run import study_folder
 from pliant.errors import ConfigError, RunFailedError
 from pliant.experiments.base import CaseConfig, Result, Study
 from pliant.experiments.lock import locked
-from pliant.experiments.pool import open_pool
+from pliant.experiments.open_pool import open_pool
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import Request, ResultStore, Run, key, read_results, unsettled
 from pliant.experiments.summarise import summarised

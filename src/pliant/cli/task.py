@@ -95,7 +95,7 @@ def check_command(
         PliantError: bad input.
         RunFailedError: it cannot; the sentence says where it fails first and what would help.
     """
-    from pliant.cli.run import resolve, study_folder
+    from pliant.cli.choose import resolve, study_folder
     from pliant.errors import RunFailedError
     from pliant.studies.task.config import TaskCase
     from pliant.studies.task.reach_figure import reach_figure

@@ -14,16 +14,16 @@ from rich.console import Console
 from rich.table import Table
 
 from pliant import __version__
+from pliant.cli.choose import study_folder
 from pliant.cli.progress import count_bar
-from pliant.cli.run import study_folder
 from pliant.experiments.config import assigned, merged
 from pliant.experiments.lock import locked
+from pliant.experiments.open_pool import open_pool
 from pliant.experiments.parquet import write_parquet
-from pliant.experiments.pool import open_pool
 from pliant.experiments.registry import get_study
-from pliant.experiments.search import Trial, require_optuna, search
+from pliant.experiments.search import Trial, find_tuning, require_optuna, search
 from pliant.experiments.sweep import check_buildable
-from pliant.experiments.tuning import PENALTY, Tuning, find_tuning
+from pliant.experiments.tuning import PENALTY, Tuning
 from pliant.telemetry.output import output_folder, write_text
 from pliant.telemetry.table import number
 

@@ -14,6 +14,7 @@ from pliant.experiments.base_config import check_windows as check_windows
 from pliant.experiments.case import C, Case, Row, row_runs
 from pliant.experiments.result import Result as Result
 from pliant.experiments.row_keys import refuse_row_keys
+from pliant.experiments.tuning import Tuning
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots.style import save
 from pliant.telemetry.summary import Metric
@@ -22,8 +23,6 @@ from pliant.wiring.registry import controllers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from pliant.experiments.tuning import Tuning
 
 
 class Study(ABC, Generic[C]):

@@ -1,21 +1,13 @@
-"""Where the tasks of a sweep are done: in this process, in processes of its own, or on a running dask scheduler."""
+"""What a place is where the tasks of a sweep are done, and the simplest one: this process."""
 
 from __future__ import annotations
 
-import signal
-import threading
-from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from types import FrameType
 from typing import Protocol, TypeVar
-
-from pliant.errors import ConfigError
 
 T = TypeVar("T")
 R = TypeVar("R")
-MOST_JOBS = 1024
-"""processes of one command: more is a slip of the keyboard"""
 
 
 @dataclass(frozen=True)
@@ -37,53 +29,3 @@ def in_this_process(function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[
     """One after the other, without any other process."""
     for index, task in enumerate(tasks):
         yield index, function(task)
-
-
-@contextmanager
-def open_pool(jobs: int = 1, scheduler: str | None = None) -> Generator[Pool]:
-    """A pool for the tasks of one command.
-
-    Args:
-        jobs: processes on this machine; one means this very process. Results do not depend on it.
-        scheduler: address of a running dask scheduler, `tcp://HOST:PORT`, whose workers are used instead.
-
-    Raises:
-        ConfigError: fewer than one job, or a scheduler that does not answer or whose workers have another pliant.
-        MissingExtraError: a scheduler is named, but dask is not installed.
-    """
-    if not 1 <= jobs <= MOST_JOBS:
-        raise ConfigError(f"a sweep takes 1 to {MOST_JOBS} jobs, got {jobs}")
-    if scheduler is None and jobs == 1:
-        yield in_this_process
-        return
-    with _interrupt_later() as interrupted:
-        if scheduler is None:
-            from pliant.experiments.workers import local_workers
-
-            with local_workers(jobs, interrupted) as pool:
-                yield pool
-        else:
-            from pliant.experiments.cluster import connected
-
-            with connected(scheduler, interrupted) as pool:
-                yield pool
-
-
-@contextmanager
-def _interrupt_later() -> Generator[threading.Event]:
-    """The first Ctrl-C sets the event, so that nothing is cut off in the middle; the second one interrupts."""
-    asked = threading.Event()
-
-    def note(_number: int, _frame: FrameType | None) -> None:
-        if asked.is_set():
-            raise KeyboardInterrupt
-        asked.set()
-
-    if threading.current_thread() is not threading.main_thread():
-        yield asked  # signals come to the main thread only
-        return
-    before = signal.signal(signal.SIGINT, note)
-    try:
-        yield asked
-    finally:
-        signal.signal(signal.SIGINT, before)

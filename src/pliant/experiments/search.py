@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from pliant.errors import ConfigError, MissingExtraError
-from pliant.experiments.base import CaseConfig, Result
+from pliant.errors import ConfigError, MissingExtraError, options
+from pliant.experiments.base import CaseConfig, Result, Study
 from pliant.experiments.config import merged
 from pliant.experiments.pool import Pool, in_this_process
 from pliant.experiments.results import key
@@ -34,6 +34,19 @@ class Trial:
     """runs that did not reach their end"""
     failure: str | None = None
     """why the first of them did not"""
+
+
+def find_tuning(study: Study[Any], controller: str, case: str | None = None) -> Tuning:
+    """How a controller of a study is tuned for a case.
+
+    Raises:
+        ConfigError: the study has no such controller or case, or does not say how it is tuned.
+    """
+    if ":" not in controller and controller not in study.controllers:  # a class of the user's own is found by `tuning`
+        raise ConfigError(
+            f"study {study.name!r} has no controller {controller!r}; {options(study.controllers, controller)}"
+        )
+    return study.tuning(controller, case)
 
 
 def search(study: str, tuning: Tuning, trials: int, *, seed: int = 0, pool: Pool = in_this_process) -> Iterator[Trial]:

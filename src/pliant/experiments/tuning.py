@@ -7,8 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from pliant.dotted import nested
 from pliant.errors import ConfigError, options
-from pliant.experiments.base import CaseConfig, Result, Study
+from pliant.experiments.base_config import CaseConfig
+from pliant.experiments.result import Result
 
 PENALTY = 1e9
 """objective of a set of parameters with which every run fails; with some of them, that share of it"""
@@ -75,28 +77,3 @@ class Tuning:
             return PENALTY * failed / len(results)
         value = float(self.objective(results))
         return value if math.isfinite(value) else PENALTY
-
-
-def find_tuning(study: Study[Any], controller: str, case: str | None = None) -> Tuning:
-    """How a controller of a study is tuned for a case.
-
-    Raises:
-        ConfigError: the study has no such controller or case, or does not say how it is tuned.
-    """
-    if ":" not in controller and controller not in study.controllers:  # a class of the user's own is found by `tuning`
-        raise ConfigError(
-            f"study {study.name!r} has no controller {controller!r}; {options(study.controllers, controller)}"
-        )
-    return study.tuning(controller, case)
-
-
-def nested(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Turns `{"a.b": 1.0}` into `{"a": {"b": 1.0}}`."""
-    tree: dict[str, Any] = {}
-    for name, value in values.items():
-        *parents, last = name.split(".")
-        node = tree
-        for part in parents:
-            node = node.setdefault(part, {})
-        node[last] = value
-    return tree

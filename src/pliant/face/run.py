@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pliant.dotted import nested
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Study, check_windows
 from pliant.experiments.choice import chosen
-from pliant.experiments.pool import open_pool
+from pliant.experiments.open_pool import open_pool
 from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
 from pliant.experiments.sweep import compared, sweep
-from pliant.experiments.tuning import nested
 from pliant.face.result import Comparison, Result, save
 from pliant.tasks.task import Task
 from pliant.telemetry.log import Log

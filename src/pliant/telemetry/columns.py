@@ -3,19 +3,33 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 
 from pliant.errors import ConfigError, MissingExtraError
 from pliant.spatial import Array
 
-if TYPE_CHECKING:
-    from pliant.telemetry.log import Log
+
+class Sampled(Protocol):
+    """Channels with their times, as a log has them."""
+
+    @property
+    def channels(self) -> Mapping[str, Any]:
+        """By name, each with its `shape` and `labels`."""
+        ...
+
+    def time(self, name: str) -> Array:
+        """(n,) s."""
+        ...
+
+    def __getitem__(self, name: str) -> Array:
+        """(n, …)."""
+        ...
 
 
-def columns(log: Log, names: Sequence[str] = ()) -> dict[str, Array]:
+def columns(log: Sampled, names: Sequence[str] = ()) -> dict[str, Array]:
     """Column → (n,) values; the first is "time", s.
 
     Args:
@@ -43,7 +57,7 @@ def columns(log: Log, names: Sequence[str] = ()) -> dict[str, Array]:
     return found
 
 
-def _headings(log: Log, name: str, size: int) -> list[str]:
+def _headings(log: Sampled, name: str, size: int) -> list[str]:
     channel = log.channels[name]
     if channel.shape == ():
         return [name]

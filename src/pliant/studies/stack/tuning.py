@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from pliant.dotted import nested
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import Result
 from pliant.experiments.config import merged
-from pliant.experiments.tuning import Range, Tuning, nested
+from pliant.experiments.tuning import Range, Tuning
 from pliant.studies.stack.config import PRESETS, StackConfig
 
 _DURATION = 7.0  # s: one round of the figure-8 after the ramp

@@ -7,11 +7,11 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pliant.configuration import merged, overlaid
+from pliant.configuration import merged, nested, overlaid
 from pliant.errors import ConfigError
 from pliant.experiments.base import Study
 from pliant.experiments.case import Case, Row, seeded
-from pliant.experiments.tuning import Tuning, nested
+from pliant.experiments.tuning import Tuning
 from pliant.references.reach.check import ReachCheck
 from pliant.studies.task.check import CHECKED_DRAWS
 from pliant.studies.task.config import TaskCase

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from pliant.configuration import merged
+from pliant.configuration import merged, nested
 from pliant.entries import Believed
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import Result
-from pliant.experiments.tuning import Range, Tuning, nested
+from pliant.experiments.tuning import Range, Tuning
 from pliant.robot import Robot
 from pliant.studies.task.config import TaskCase
 
