@@ -100,3 +100,9 @@ def test_a_comparison_takes_one_seed_and_no_fewer() -> None:
         pliant.compare("haptic", ["haptic"], seeds=0)
     with pytest.raises(ConfigError, match="got 0 and 3"):
         pliant.compare("haptic", [], seeds=3)
+
+
+@pytest.mark.parametrize("key", ["variant", "study"])
+def test_what_says_which_run_it_is_cannot_be_changed(key: str) -> None:
+    with pytest.raises(ConfigError, match=f"{key!r} says which run it is"):
+        pliant.run("haptic", **{key: "another"})

@@ -43,6 +43,8 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except (typer.Exit, typer.Abort, BrokenPipeError):  # no errors of ours
             raise
         except (Exception, SystemExit) as error:
+            if isinstance(error.__context__, BrokenPipeError):  # rich ends by SystemExit where nobody reads on
+                raise
             _complain("error", f"pliant {__version__} did not foresee this ({told(error)}); {_kept()}")
             raise typer.Exit(2) from None
 

@@ -22,7 +22,7 @@ err = Console(stderr=True)
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for logs, figures and summary.json.")]
 Sets = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Overrides one value, e.g. plant.period=0.002; repeatable."),
+    typer.Option("--set", metavar="KEY=VALUE", help="Overrides one value, e.g. seed=3; repeatable; see --show-config."),
 ]
 Controller = Annotated[
     str | None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from pliant.dotted import nested
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Study, check_windows
 from pliant.experiments.choice import chosen
+from pliant.experiments.config import IDENTITY
 from pliant.experiments.open_pool import open_pool
 from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
@@ -53,7 +54,7 @@ def run(
         PliantError: bad input, in one sentence; nothing was run.
     """
     overrides = {"controller": controller, "robot": robot, "seed": seed, "own_metrics": metrics}
-    asked = chosen(_named(what), case, overrides, nested(changes))
+    asked = chosen(_named(what), case, overrides, _changes(changes))
     study, config = asked.study, asked.config
     check_windows(config)
     if out is not None:
@@ -96,7 +97,7 @@ def compare(
         raise ConfigError(f"a comparison takes a list of controllers, got the text {controllers!r}")
     if not controllers or seeds < 1:
         raise ConfigError(f"a comparison needs a controller and a seed, got {len(controllers)} and {seeds}")
-    choice = chosen(_named(what), case, {"robot": robot, "own_metrics": metrics}, nested(changes))
+    choice = chosen(_named(what), case, {"robot": robot, "own_metrics": metrics}, _changes(changes))
     study = choice.study
     asked = compared(choice.config, controllers, seeds)
     for config in asked[::seeds]:
@@ -107,6 +108,14 @@ def compare(
         for done in sweep(study.name, asked, pool=pool):
             made[done.result.config.controller, done.result.config.seed] = done.result
     return Comparison(study, [made[config.controller, config.seed] for config in asked])
+
+
+def _changes(given: Mapping[str, Any]) -> dict[str, Any]:
+    changes = nested(given)
+    for key in IDENTITY:
+        if key in changes:
+            raise ConfigError(f"{key!r} says which run it is and cannot be changed")
+    return changes
 
 
 def _named(what: str | Path | Task) -> str | Task:

@@ -7,7 +7,8 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pliant.configuration import merged, nested, overlaid
+from pliant.configuration import merged, overlaid
+from pliant.dotted import nested
 from pliant.errors import ConfigError
 from pliant.experiments.base import Study
 from pliant.experiments.case import Case, Row, seeded

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from pliant.configuration import merged, nested
+from pliant.configuration import merged
+from pliant.dotted import nested
 from pliant.entries import Believed
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import Result
