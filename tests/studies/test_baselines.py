@@ -13,6 +13,7 @@ from pliant.experiments.model_error import with_mass_error
 from pliant.experiments.registry import get_study
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference, TaskReference
+from pliant.wiring.registry import controllers
 
 STACK = get_study("stack")
 
@@ -71,3 +72,15 @@ def test_a_damped_spring_brakes_and_an_undamped_one_does_not() -> None:
         torques.append(command.torque)
     assert torques[0] == pytest.approx(np.zeros(7), abs=1e-9)
     assert torques[1] == pytest.approx(-3.0 * v, abs=1e-9)
+
+
+MODELLED = {"mpc", "operational-space"}
+"""families that compute with the robot's masses"""
+
+
+@pytest.mark.parametrize("name", ["stack", "polishing"])
+def test_every_compared_controller_with_a_model_has_rows_with_wrong_masses(name: str) -> None:
+    study = get_study(name)
+    runs = [run for case in study.cases for run in study.runs(case, 1)]
+    wrong = {run.controller for run in runs if run.model_mass_error == 0.2}
+    assert wrong == {run.controller for run in runs if controllers()[run.controller].family in MODELLED}

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed
 from pliant.experiments.base import Experiment
 from pliant.experiments.config import merged
@@ -41,6 +42,10 @@ def test_every_controller_runs_a_case_of_every_study(study: str, case: str, name
     assert np.isfinite(torques).all()
     assert np.all(np.abs(torques) <= made.robot.torque_limit + 1e-9)
     assert np.any(torques)  # it does something
+    exceeded = np.array([tick.command.diagnostics["step_limit/exceeded"] for tick in seen[1:]])
+    steps = np.abs(np.diff(torques, axis=0)) / made.robot.torque_limit
+    assert np.all(steps.max(axis=1) <= DEFAULT_SHARE * (1.0 + exceeded) + 1e-9)
+    assert exceeded.any() <= ("stack" in name)  # only an account that cannot pay may go further
     entry = controllers()[name]
     said = any("does not regulate a force" in text for text in made.warnings)
     assert said == (study != "stack" and not entry.regulates_force)

@@ -11,7 +11,18 @@ from pliant.experiments.case import Case, Changes, Row
 from pliant.mpc.defaults import OffsetFreeMpc
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.config import PolishingConfig
-from pliant.studies.polishing.rows import BEST, DELAY, ROWS, STOCK, SWEPT, WITHOUT_LOOP, case_config, imperfect, varied
+from pliant.studies.polishing.rows import (
+    ALL,
+    BEST,
+    DELAY,
+    ROWS,
+    STOCK,
+    SWEPT,
+    WITHOUT_LOOP,
+    case_config,
+    imperfect,
+    varied,
+)
 
 _EVERYTHING = {"control": {"compensation": OffsetFreeMpc().compensation.model_dump()}}
 _THREE_D = {
@@ -95,5 +106,10 @@ BEYOND_CASES: tuple[Case[PolishingConfig], ...] = (
         ],
         SWEPT,
         figures=[ROWS],
+    ),
+    Case(
+        case_config("wrong-masses", controller=BEST, **imperfect(delay=DELAY)),
+        [varied(name, "masses ± 20 %", {"model_mass_error": 0.2}) for name in ALL],
+        SWEPT,
     ),
 )

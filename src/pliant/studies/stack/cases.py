@@ -55,6 +55,12 @@ def _no_wall(controller: str | None) -> Row:
     return Row("no wall", controller, {"wall": None})
 
 
+def _wrong_masses(config: StackConfig) -> list[Row]:
+    """The rows of a case, and the baseline that knows the masses with each of them off by up to 20 %."""
+    wrong = Row("masses ± 20 %", "operational-space", {"model_mass_error": 0.2}, draws=seeded(10), shown=False)
+    return [*_rows(config), wrong]
+
+
 def _elbow(force: float) -> Row:
     """Another strength of the elbow's task; 0 N switches it off."""
     own = {"stiffness": 0.0} if force == 0.0 else {"linear_range": min(0.01, 0.5 * force / 5000.0)}
@@ -63,6 +69,8 @@ def _elbow(force: float) -> Row:
 
 
 _WALL = StackConfig(case="figure8-wall", wall=Wall(), joints=_GAZEBO)
+_FRICTION = StackConfig(case="figure8-gazebo", joints=_GAZEBO)
+_LATE = StackConfig(case="figure8-hardware", **_HARDWARE_LOOP)
 _RESTING = Pushes(frame="flange", gap=(0.5, 0.6))
 
 # The paper's numbers: [Stack] sec. IV, mm; those of hardware, pushed and line were measured on its robot.
@@ -84,8 +92,8 @@ _ALL = (
         _xyz(5.6, 4.6, 6.1),
         _xyz(1.0, 1.2, 3.5) | {"torque variation": 100.0},
     ),
-    _case(StackConfig(case="figure8-gazebo", joints=_GAZEBO), _xyz(5.6, 4.6, 6.1), _xyz(4.0, 2.5, 3.5)),
-    _case(StackConfig(case="figure8-hardware", **_HARDWARE_LOOP), _xyz(7.6, 1.5, 8.6), _xyz(3.5, 2.5, 2.5)),
+    _case(_FRICTION, _xyz(5.6, 4.6, 6.1), _xyz(4.0, 2.5, 3.5), _wrong_masses(_FRICTION)),
+    _case(_LATE, _xyz(7.6, 1.5, 8.6), _xyz(3.5, 2.5, 2.5), _wrong_masses(_LATE)),
     _case(
         StackConfig(case="figure8-pushed", **_HARDWARE_LOOP, pushes=Pushes()),
         _xyz(20.3, 7.9, 9.1),
