@@ -16,8 +16,10 @@ from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.measure import Signals
+from pliant.surfaces.unroll import unrolled
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
+from pliant.telemetry.plots.path import coloured_way
 from pliant.telemetry.plots.pictures import picture_row
 from pliant.telemetry.plots.rows import dots
 
@@ -28,12 +30,16 @@ _METRES_PER_NEWTON = 0.004
 _REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (0.76, 0.18, 0.18, 1.0)
 _SHARES = (0.02, 0.35, 0.65, 0.98)
 """of the path, at which the robot is drawn"""
+_EVERY = 10
+"""samples: of a map one dot"""
 
 
 def run_figures(case: TaskCase, experiment: Experiment, log: Log, signals: Signals, folder: Path) -> list[Path]:
     """Force and distance from the path over time; force error along the way; the robot at four moments."""
     stem = file_stem(case)
     files = [save(_history(case, log, signals), folder / f"{stem}_history.png")]
+    if np.count_nonzero(signals.following) > 2 * _EVERY:
+        files.append(save(_map(case, signals), folder / f"{stem}_map.png"))
     scene = _moments(case, experiment, log, signals)
     return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
 
@@ -69,8 +75,19 @@ def _history(case: TaskCase, log: Log, signals: Signals) -> Figure:
         Panel("distance from the path, mm", [Curve("", time, 1e3 * signals.beside)]),
         Panel("largest torque, % of its limit", [Curve("", time, 100.0 * signals.limit.max(axis=1))]),
     ]
-    title = " · ".join(part for part in (case.case, case.robot, case.controller, case.variant) if part)
-    return time_series(panels, title=title, phases=log.phases())
+    return time_series(panels, title=_title(case), phases=log.phases())
+
+
+def _map(case: TaskCase, signals: Signals) -> Figure:
+    """Force error as colour along the way on the surface, which is laid flat."""
+    on = np.flatnonzero(signals.following)[::_EVERY]
+    places = signals.place[on] - case.tool.radius * signals.normal[on]
+    error = signals.force[on] - signals.wanted[on]
+    return coloured_way(unrolled(places, signals.normal[on]), error, "force error, N", _title(case))
+
+
+def _title(case: TaskCase) -> str:
+    return " · ".join(part for part in (case.case, case.robot, case.controller, case.variant) if part)
 
 
 def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: Signals) -> Figure | None:

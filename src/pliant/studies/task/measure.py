@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,10 @@ class Signals:
     """(k,) the path is run"""
     limit: Array
     """(k, n) share of each joint's torque limit that was sent"""
+    place: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    """(k, 3) m, of the tool"""
+    normal: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    """(k, 3) of the true surface below it"""
 
 
 @dataclass(frozen=True)
@@ -116,6 +120,8 @@ def signals_of(log: Log, frame: str, surface: SurfaceGeometry, torque_limits: Ar
         np.linalg.norm(off, axis=1),
         _in_phase(log, time, "follow"),
         np.abs(log["command/torque"]) / torque_limits,
+        place,
+        normals,
     )
 
 

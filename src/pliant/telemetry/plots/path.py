@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MM = 1e3  # mm per m
+_PAPER = "#d9dde2"  # on which white is seen
 _ERRORS = ("#0b6fb8", "#3fb0e0", "#e0a100", "#c22f2f")
 
 
@@ -113,3 +114,27 @@ def _draw_wall(ax: Axes, wall: float) -> None:
     low, high = ax.get_xlim()
     ax.axvspan(wall, max(high, wall + 0.05 * (high - low)), color=style.MUTED, alpha=0.15, linewidth=0, label="wall")
     ax.axvline(wall, color=style.MUTED, linewidth=1.2)
+
+
+def coloured_way(place: Array, value: Array, label: str, title: str = "") -> Figure:
+    """A way on a flat surface, drawn to scale, with a signed value as colour: white is none.
+
+    Args:
+        place: (k, 2) m; the axes begin at its first row.
+        value: (k,).
+        label: of the value, with its unit.
+        title: above it.
+    """
+    made = style.figure(*_size([place]), title)
+    ax = made.add_subplot()
+    style.dress(ax, "along, mm", "across, mm")
+    ax.set_facecolor(_PAPER)
+    most = float(np.nanpercentile(np.abs(value), 99.0)) or 1.0  # one peak must not pale all the rest
+    dots = ax.scatter(_MM * place[:, 0], _MM * place[:, 1], c=value, s=9.0, cmap="RdBu_r", vmin=-most, vmax=most)
+    ax.plot(*(_MM * place[0]), marker="o", markersize=7.0, markerfacecolor="none", color=style.INK, linestyle="none")
+    ax.annotate("start", _MM * place[0], (6.0, 6.0), textcoords="offset points", fontsize=style.SMALL, color=style.INK)
+    ax.set_aspect("equal", adjustable="datalim")
+    bar = made.colorbar(dots, ax=ax, extend="both", fraction=0.05)
+    bar.set_label(label, fontsize=style.NORMAL, color=style.INK)
+    bar.ax.tick_params(labelsize=style.SMALL)
+    return made
