@@ -3,7 +3,7 @@
 Run: pliant study stack --seeds 2 --out stack; python benchmarks/docs_tables.py stack stack
      pliant study haptic --seeds 2 --out haptic; python benchmarks/docs_tables.py haptic haptic
 
-Several folders are put together, so that a study may be run case by case.
+Several folders are put together, so that a study may be run case by case; of the same run the last one counts.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from pliant.experiments.base import Result
 from pliant.experiments.registry import get_study
-from pliant.experiments.results import read_results
+from pliant.experiments.results import key, read_results
 from pliant.experiments.summarise import summarised
 from pliant.telemetry.summary import Case, Metric, Summary
 from pliant.telemetry.table import number, target_text, value_text
@@ -82,10 +83,11 @@ def _compared(row: Case | None) -> str:
 
 
 def main(name: str, *folders: str) -> None:
-    study, results = get_study(name), []
+    study, runs = get_study(name), dict[str, Result]()
     for folder in folders:
-        results += [run.result for run in read_results(Path(folder) / "results.parquet")[1]]
-    summary = summarised(study, results)
+        for run in read_results(Path(folder) / "results.parquet")[1]:
+            runs[key(run.result.config)] = run.result
+    summary = summarised(study, list(runs.values()))
     print(stack_tables(summary) if name == "stack" else haptic_table(summary))
     for row in summary.cases:
         for failure in row.failures:
