@@ -11,8 +11,9 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 
+from pliant.rigid_body import joint_motions
 from pliant.robot import Robot
-from pliant.spatial import Array
+from pliant.spatial import Array, quaternion
 
 VISUAL_GROUP = 2
 """geom group of shapes that are drawn and never touch anything"""
@@ -37,28 +38,12 @@ def spec_from_robot(robot: Robot) -> mujoco.MjSpec:
     spec.compiler.degree = False
     spec.option.gravity = np.array(robot.model.gravity.linear)
     bodies = [spec.worldbody]
-    axes = _joint_axes(robot.model)
+    motions = joint_motions(robot.model)
     for index in range(1, robot.model.njoints):
-        bodies.append(_add_body(robot, bodies, index, axes[index - 1]))
+        bodies.append(_add_body(robot, bodies, index, motions[index - 1]))
     _add_frames(robot, bodies)
     _add_visuals(robot, spec, bodies)
     return spec
-
-
-def quaternion(R: Array) -> Array:
-    """Unit quaternion (w, x, y, z) of a rotation matrix (3, 3)."""
-    q = pin.Quaternion(np.asarray(R))
-    return np.array([q.w, q.x, q.y, q.z])
-
-
-def _joint_axes(model: pin.Model) -> list[Array]:
-    """Motion of each joint in its own axes, (6,) linear first."""
-    data = model.createData()
-    neutral = pin.neutral(model)
-    return [
-        np.array(pin.computeJointJacobian(model, data, neutral, index)).reshape(6, -1)[:, model.joints[index].idx_v]
-        for index in range(1, model.njoints)
-    ]
 
 
 def _add_body(robot: Robot, bodies: list[mujoco.MjsBody], index: int, axis: Array) -> mujoco.MjsBody:

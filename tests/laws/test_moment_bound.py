@@ -8,7 +8,8 @@ import pytest
 from pliant.controllers import FrameTask, Law, Stack
 from pliant.robot import Robot
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
-from pliant.spatial import exp3, left_jacobian_inverse
+from pliant.spatial import exp3
+from tests.rotations import left_jacobian_inverse
 
 
 def largest_share(robot: Robot, law: Law, trials: int) -> tuple[float, float]:

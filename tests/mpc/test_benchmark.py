@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from pliant.mpc import ForceFeedbackMpc
-from pliant.mpc.benchmark import run, statistics
+from pliant.mpc.benchmark import run
 from pliant.mpc.noisy_loop import BenchCase, NoisyLoop
 from pliant.robot import Robot, Tool
+from pliant.stopwatch import percentiles
 
 
 def test_results_are_complete_and_plain() -> None:
@@ -47,4 +48,4 @@ def test_the_loop_is_noisy_and_goes_round() -> None:
 
 
 def test_statistics_are_percentiles() -> None:
-    assert statistics(np.arange(101.0)) == {"median": 50.0, "p90": 90.0, "p99": 99.0, "max": 100.0}
+    assert percentiles(np.arange(101.0)) == {"median": 50.0, "p90": 90.0, "p99": 99.0, "max": 100.0}

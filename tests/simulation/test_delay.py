@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError
-from pliant.simulation.imperfections.delay import Delay, whole_periods
+from pliant.sampling import whole_periods
+from pliant.simulation.imperfections.delay import Delay
 
 
 @given(periods=st.integers(0, 20), length=st.integers(1, 60))

@@ -9,7 +9,8 @@ import numpy as np
 from pliant.controllers.attractor import Attractor, AttractorState, Law, PhaseSettings, converging_force
 from pliant.controllers.passivity_account import Motion
 from pliant.controllers.profiles import ForceProfile
-from pliant.spatial import Array, left_jacobian_inverse, log3
+from pliant.spatial import Array, log3
+from tests.rotations import left_jacobian_inverse
 
 
 @dataclass

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from pliant.controllers.dynamics import mass_matrix
 from pliant.controllers.profiles import ForceProfile, Shape
+from pliant.rigid_body import mass_matrix
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array

@@ -10,9 +10,9 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
-from pliant.controllers.dynamics import mass_matrix
 from pliant.errors import ConfigError, SignalError, options
 from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
+from pliant.rigid_body import mass_matrix
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference, TaskReference
 from pliant.spatial import Array, all_finite, log3

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pliant.errors import ConfigError
+from pliant.sampling import kept_share
 from pliant.spatial import Array
 
 
@@ -42,7 +43,7 @@ class FirstOrder(LowPass):
 
     def __init__(self, cutoff: float, period: float) -> None:
         _check(cutoff, period)
-        self.gain = -math.expm1(-2.0 * math.pi * cutoff * period)
+        self.gain = 1.0 - kept_share(cutoff, period)
         """α"""
 
     def init(self, value: Array) -> Memory:

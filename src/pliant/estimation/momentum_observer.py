@@ -26,6 +26,7 @@ from pliant.errors import ConfigError, options
 from pliant.estimation.ordering import time_since
 from pliant.frozen import changed
 from pliant.interfaces import Estimator
+from pliant.rigid_body import mass_matrix
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
@@ -109,7 +110,6 @@ class MomentumObserver(Estimator[MomentumState]):
         self.surface = normal if isinstance(normal, SurfaceGeometry) else PlaneSurface.facing(normal)
         self.frames = None if frames is None else frozenset(frames)
         self._ids = {frame: robot.frame_id(frame) for frame in frames or ()}
-        self._upper = np.triu(np.ones((robot.n, robot.n), dtype=bool))
         self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
 
     def init(self, measurement: Measurement) -> MomentumState:
@@ -145,8 +145,7 @@ class MomentumObserver(Estimator[MomentumState]):
     def _model_terms(self, measurement: Measurement, wrenches: Mapping[str, Array]) -> tuple[Array, Array]:
         """p (n,) and Jᵀλ + β (n,) at a measurement."""
         model, data, q, v = self.robot.model, self._data, measurement.q, measurement.v
-        upper = np.asarray(pin.crba(model, data, q))
-        mass = np.where(self._upper, upper, upper.T)  # pinocchio does not promise the lower triangle
+        mass = mass_matrix(model, data, q)
         C = np.array(pin.computeCoriolisMatrix(model, data, q, v))
         explained: Array = C.T @ v
         if self.compensation == "none":

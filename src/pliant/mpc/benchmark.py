@@ -19,7 +19,7 @@ from pliant.mpc.config import Bounds, MpcConfig
 from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, TorqueFeedbackMpc
 from pliant.mpc.noisy_loop import BenchCase, NoisyLoop
 from pliant.robot import Robot, Tool
-from pliant.spatial import Array
+from pliant.stopwatch import Stopwatch, percentiles
 
 
 def run(
@@ -94,24 +94,21 @@ def _timed(case: BenchCase, solves: int, pause: float, paused: int, yardstick: d
 def _solve_times(loop: NoisyLoop, solves: int, pause: float) -> dict[str, Any]:
     """Times of `solves` solves after a tenth more to warm up."""
     warm_up = max(solves // 10, 5)
-    cpu, wall, iterations, reached = np.empty(solves), np.empty(solves), np.empty(solves), 0
+    watch, iterations, reached = Stopwatch(), np.empty(solves), 0
     for k in range(-warm_up, solves):
         x = loop.next_state()
         loop.solver.shift()
         if pause and k >= 0:
             time.sleep(pause)
-        wall_start, cpu_start = time.perf_counter_ns(), time.thread_time_ns()
-        solution = loop.solver.solve(x, max_iterations=8, tolerance=1e-4)
-        cpu_end, wall_end = time.thread_time_ns(), time.perf_counter_ns()
+        with watch.timed(k >= 0):
+            solution = loop.solver.solve(x, max_iterations=8, tolerance=1e-4)
         loop.follow(solution.xs)
         if k >= 0:
-            cpu[k], wall[k] = 1e-3 * (cpu_end - cpu_start), 1e-3 * (wall_end - wall_start)
             iterations[k] = solution.iterations
             reached += solution.kkt <= 1e-4
     return {
-        "cpu": statistics(cpu),
-        "wall": statistics(wall),
-        "per_iteration": statistics(cpu / np.maximum(iterations, 1)),
+        **watch.summary(),
+        "per_iteration": percentiles(watch.cpu / np.maximum(iterations, 1)),
         "iterations": {"mean": float(iterations.mean()), "max": int(iterations.max())},
         "kkt_reached": reached / solves,
     }
@@ -141,21 +138,20 @@ def _bridge(case: BenchCase, solves: int) -> dict[str, Any]:
     except (ImportError, MissingExtraError):
         return {"missing": "pip install 'pliant[crocoddyl]'"}
     loop = NoisyLoop(case)
-    cpu, iterations = np.empty(solves), np.empty(solves)
+    watch, iterations = Stopwatch(), np.empty(solves)
     xs, us = loop.solver.xs, loop.solver.us
     for k in range(solves):
         x = loop.next_state()
         sqp = SolverSQP(shooting_problem(loop.problem, loop.solver.nodes, x, loop.chain))
         sqp.termination_tolerance, sqp.use_filter_line_search = 1e-4, True
-        start = time.thread_time_ns()
-        sqp.solve([x, *xs[1:]], list(us), 8, False, loop.config.regularisation)
-        cpu[k] = 1e-3 * (time.thread_time_ns() - start)
+        with watch.timed():
+            sqp.solve([x, *xs[1:]], list(us), 8, False, loop.config.regularisation)
         iterations[k] = sqp.iter
         xs, us = np.array(sqp.xs.tolist()), np.array(sqp.us.tolist())
         loop.follow(xs)
         xs, us = np.vstack([xs[1:], xs[-1:]]), np.vstack([us[1:], us[-1:]])
     what = "mim-solvers SQP, action models in Python over the kernel's nodes"
-    return {"what": what, "cpu": statistics(cpu), "iterations": {"mean": float(iterations.mean())}}
+    return {"what": what, "cpu": percentiles(watch.cpu), "iterations": {"mean": float(iterations.mean())}}
 
 
 def _growth(arm: Robot, solves: int) -> dict[str, list[dict[str, float]]]:
@@ -187,15 +183,8 @@ def _yardstick(arm: Robot, calls: int) -> dict[str, float]:
     data = arm.model.createData()
     q, v, tau = arm.home, np.full(arm.n, 0.1), np.full(arm.n, 1.0)
     call: Callable[..., Any] = pin.computeABADerivatives
-    times = np.empty(calls)
-    for k in range(calls):
-        start = time.perf_counter_ns()
-        call(arm.model, data, q, v, tau)
-        times[k] = 1e-3 * (time.perf_counter_ns() - start)
-    return statistics(times)
-
-
-def statistics(times: Array) -> dict[str, float]:
-    """Median, 90th and 99th percentile and largest of times (k,)."""
-    median, p90, p99 = np.percentile(times, [50, 90, 99])
-    return {"median": float(median), "p90": float(p90), "p99": float(p99), "max": float(times.max())}
+    watch = Stopwatch()
+    for _ in range(calls):
+        with watch.timed():
+            call(arm.model, data, q, v, tau)
+    return percentiles(watch.wall)

@@ -9,6 +9,7 @@ import pinocchio as pin
 
 from pliant import _mpc
 from pliant.errors import RobotError
+from pliant.rigid_body import joint_motions
 from pliant.robot import Robot
 from pliant.spatial import Array
 
@@ -81,12 +82,7 @@ def _on_last_link(robot: Robot, name: str) -> pin.SE3:
 
 def _joint_axes(model: pin.Model) -> tuple[Array, list[_JointKind]]:
     """Axis (n, 3) of each joint in its own frame, and 'revolute' or 'prismatic'."""
-    data = model.createData()
-    neutral = pin.neutral(model)
-    motions = [
-        np.array(pin.computeJointJacobian(model, data, neutral, joint)[:, model.joints[joint].idx_v])
-        for joint in range(1, model.njoints)
-    ]
+    motions = joint_motions(model)
     turning = [bool(np.any(motion[3:])) for motion in motions]
     axes = np.stack([motion[3:] if turns else motion[:3] for motion, turns in zip(motions, turning, strict=True)])
     kinds: list[_JointKind] = ["revolute" if turns else "prismatic" for turns in turning]

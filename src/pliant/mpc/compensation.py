@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pliant.errors import ConfigError
 from pliant.mpc.config import Compensation
+from pliant.sampling import whole_periods
 
 
 @dataclass(frozen=True)
@@ -34,14 +34,9 @@ def delays_of(config: Compensation, period: float) -> Delays:
     Raises:
         ConfigError: a delay or an average that is not a whole number of periods.
     """
-    under_way = _periods(config.delay, period, "compensation.sensing_delay + compensation.computation_delay")
-    averaged = max(_periods(config.averaging, period, "compensation.averaging"), 1)
+    under_way = whole_periods(
+        config.delay, period, "compensation.sensing_delay + compensation.computation_delay", "the control period"
+    )
+    averaged = max(whole_periods(config.averaging, period, "compensation.averaging", "the control period"), 1)
     late = round(0.5 * (averaged - 1) + 1e-9)
     return Delays(under_way, averaged, late, config.computation_delay + late * period)
-
-
-def _periods(duration: float, period: float, what: str) -> int:
-    ratio = duration / period
-    if abs(ratio - round(ratio)) > 1e-6:
-        raise ConfigError(f"{what} must be a whole multiple of the control period {period:g} s, got {duration:g} s")
-    return round(ratio)

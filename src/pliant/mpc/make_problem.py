@@ -11,6 +11,7 @@ from pliant.errors import ConfigError, RobotError, ShapeError, options
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.costs import Term
 from pliant.mpc.problem import AXES_OF_DIMENSION, MpcProblem, filled
+from pliant.rigid_body import mass_matrix
 from pliant.robot import Robot
 from pliant.spatial import Array, frame_with_z_along
 
@@ -122,7 +123,6 @@ def _task_inertia(config: MpcConfig, model: pin.Model, posture: Array) -> Array:
     J_world = pin.getFrameJacobian(model, data, frame, pin.LOCAL if local else pin.LOCAL_WORLD_ALIGNED)
     R = frame_with_z_along(config.contact.normal).T if config.contact.axes == "surface" else np.eye(3)
     J = np.vstack([R @ J_world[:3], R @ J_world[3:]])
-    upper = np.triu(pin.crba(model, data, posture))
-    M = upper + np.triu(upper, 1).T
+    M = mass_matrix(model, data, posture)
     mobility = np.einsum("ij,ji->i", J, np.linalg.solve(M, J.T))[list(AXES_OF_DIMENSION[config.contact.dimension])]
     return 1.0 / np.maximum(mobility, 1e-9)

@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 from pliant.robots.description import free_name, set_limits
-from pliant.spatial import Array
+from pliant.spatial import Array, rotation_of_quaternion
 
 _HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 _AT_JOINT = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
@@ -150,6 +150,4 @@ def _tensor(compiled: mujoco.MjModel, body: int) -> Array:
 
 def pose(pos: Array, quat: Array) -> pin.SE3:
     """A pose from MuJoCo's position (3,) m and quaternion (w, x, y, z)."""
-    R = np.zeros(9)
-    mujoco.mju_quat2Mat(R, quat)
-    return pin.SE3(R.reshape(3, 3), np.array(pos))
+    return pin.SE3(rotation_of_quaternion(quat), np.array(pos))

@@ -10,8 +10,9 @@ import mujoco
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.mujoco_model import VISUAL_GROUP, quaternion
+from pliant.mujoco_model import VISUAL_GROUP
 from pliant.simulation.surface import Surface
+from pliant.spatial import quaternion
 from pliant.surfaces import CylinderSurface, MeshSurface, SphereSurface
 
 WOOD = (0.78, 0.70, 0.60, 1.0)

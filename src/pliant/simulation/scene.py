@@ -12,10 +12,10 @@ import numpy as np
 
 from pliant._contact import SampledMesh
 from pliant.errors import ConfigError, options
-from pliant.mujoco_model import VISUAL_GROUP, quaternion
+from pliant.mujoco_model import VISUAL_GROUP
 from pliant.simulation.part import WOOD, Part
 from pliant.simulation.surface import Surface
-from pliant.spatial import Array, frame_with_z_along, rpy
+from pliant.spatial import Array, frame_with_z_along, quaternion, rpy
 from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 
 

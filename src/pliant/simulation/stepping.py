@@ -5,18 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.errors import ConfigError
+from pliant.sampling import whole_periods
 
 
 def substeps(period: float, physics_step: float) -> int:
     """Physics steps in a control period, both in s. Raises ConfigError if it is not a whole number of them."""
     if not (physics_step > 0.0 and period > 0.0):
         raise ConfigError(f"period and physics step must be above zero, got {period} s and {physics_step} s")
-    ratio = period / physics_step
-    if abs(ratio - round(ratio)) > 1e-6 or round(ratio) < 1:
-        raise ConfigError(
-            f"the control period must be a whole multiple of the physics step, got {period:g} s and {physics_step:g} s"
-        )
-    return round(ratio)
+    return whole_periods(period, physics_step, "the control period")
 
 
 def shares(total: int, parts: int) -> list[int]:

@@ -114,8 +114,3 @@ class SurfaceGeometry(ABC):
         if length < 1e-6 * max(float(np.linalg.norm(d)), 1e-12):
             raise ConfigError(f"direction {d.tolist()} stands upright on the surface: give one that lies along it")
         return flat / length
-
-
-def unit_rows(vectors: Array) -> Array:
-    """(k, 3) vectors scaled to length one."""
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

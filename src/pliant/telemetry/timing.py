@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from pliant.spatial import Array
+from pliant.stopwatch import percentiles
 from pliant.telemetry.output import write_text
 
 _KEPT = 100_000  # latest periods whose times are kept for the percentiles
@@ -39,14 +40,14 @@ class Timing:
         for name, row in zip(self._names, self._times[:, : min(self._count, _KEPT)], strict=True):
             times = row[np.isfinite(row)] * 1e6
             if times.size:
-                p50, p90, p99 = (float(value) for value in np.percentile(times, (50, 90, 99)))
+                of = percentiles(times)
                 found[name] = {
                     "count": int(times.size),
                     "mean_us": float(times.mean()),
-                    "p50_us": p50,
-                    "p90_us": p90,
-                    "p99_us": p99,
-                    "max_us": float(times.max()),
+                    "p50_us": of["median"],
+                    "p90_us": of["p90"],
+                    "p99_us": of["p99"],
+                    "max_us": of["max"],
                 }
         return found
 

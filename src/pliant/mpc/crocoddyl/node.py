@@ -7,7 +7,6 @@ Gauss–Newton Hessian.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +14,7 @@ import pinocchio as pin
 
 from pliant.mpc.crocoddyl.contact import ContactGeometry
 from pliant.mpc.crocoddyl.node_dynamics import Dynamics, NodeDynamics
+from pliant.sampling import kept_share
 from pliant.spatial import Array
 
 
@@ -87,7 +87,7 @@ class PinocchioNode(NodeDynamics):
             e_next, e_x, e_u = e + dt * d.rate, dt * d.rate_x, dt * d.rate_u
             e_x[:, 2 * nv :] += np.eye(len(e))
         elif kind.torque_state:
-            alpha = math.exp(-2.0 * math.pi * self.problem.config.torque_bandwidth * dt)
+            alpha = kept_share(self.problem.config.torque_bandwidth, dt)
             e_next = alpha * e + (1.0 - alpha) * u
             e_x[:, 2 * nv :], e_u = alpha * np.eye(len(e)), (1.0 - alpha) * np.eye(self.nu)
         x_next = np.concatenate([pin.integrate(self.model, q, dt * v_next), v_next, e_next])

@@ -13,6 +13,7 @@ from pliant.mpc.crocoddyl.contact import ContactGeometry, ContactMotion
 from pliant.mpc.nodes import PlainNodes
 from pliant.mpc.problem import AXES_OF_DIMENSION, MpcProblem
 from pliant.mpc.sliding_friction import sliding_rate
+from pliant.rigid_body import mass_matrix
 from pliant.spatial import Array
 
 
@@ -164,9 +165,9 @@ class NodeDynamics:
 
     def _inertia(self, q: Array, v: Array) -> tuple[Array, Array]:
         """M⁻¹ (nv, nv) and the bias h (nv,)."""
-        upper = np.triu(pin.crba(self.model, self.data, q))
+        mass = mass_matrix(self.model, self.data, q)
         bias = np.array(pin.nonLinearEffects(self.model, self.data, q, v))
-        return _solve(upper + np.triu(upper, 1).T, np.eye(self.model.nv)), bias
+        return _solve(mass, np.eye(self.model.nv)), bias
 
     def _kinematics(self, q: Array, v: Array, a: Array) -> None:
         pin.computeForwardKinematicsDerivatives(self.model, self.data, q, v, a)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from pliant.errors import ConfigError, SignalError, options
+from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.frame import ExploredFrame, FrameRules
@@ -99,8 +100,7 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         diagnostics: dict[str, float | Array] = dict(plain.diagnostics)
         period = min(period, _LONGEST_PERIOD)
         tasks = tuple([self._felt(task, estimate, state, period, diagnostics) for task in plain.tasks])
-        reference = Reference(plain.time, tasks, plain.posture, plain.phase, plain.preview, plain.tuning, diagnostics)
-        return reference, state
+        return changed(plain, tasks=tasks, diagnostics=diagnostics), state
 
     def _felt(
         self,
@@ -180,4 +180,4 @@ def _shifted(
     clamped = [axis.clamped for axis in explored.axes]
     if any(clamped):
         wrench = np.array([f - c for f, c in zip(desired, clamped, strict=True)])
-    return TaskReference(task.frame, position, rotation, task.velocity, task.acceleration, wrench, tuning)
+    return changed(task, position=position, rotation=rotation, wrench=wrench, tuning=tuning)

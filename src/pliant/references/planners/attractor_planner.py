@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
 from pliant.references.planners.harmonic_attractor import AttractorPlan, AttractorSettings, advanced, retargeted, start
 from pliant.references.planners.harmonic_planner import Place
@@ -43,7 +44,7 @@ class AttractorPlanner(ReferenceSource[AttractorState]):
         goal, state.inner = self.inner.step(estimate, state.inner)
         period, state.time = estimate.time - state.time, estimate.time
         tasks = tuple([self._planned(task, estimate, state, period) for task in goal.tasks])
-        return Reference(goal.time, tasks, goal.posture, goal.phase, goal.preview, goal.tuning, goal.diagnostics), state
+        return changed(goal, tasks=tasks), state
 
     def _planned(self, task: TaskReference, estimate: Estimate, state: AttractorState, period: float) -> TaskReference:
         plan = state.plans.get(task.frame)
@@ -62,4 +63,4 @@ class AttractorPlanner(ReferenceSource[AttractorState]):
         if period > 0.0:
             acceleration[:3] = (velocity[:3] - [axis.velocity for axis in before.axes]) / period
         position = np.array([axis.position for axis in plan.axes])
-        return TaskReference(task.frame, position, task.rotation, velocity, acceleration, task.wrench, task.tuning)
+        return changed(task, position=position, velocity=velocity, acceleration=acceleration)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, SignalError
+from pliant.frozen import changed
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Coming, instants, preview_of
 from pliant.references.planners.superposition import MotionLimits, Plan
@@ -116,7 +117,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         preview = goal.preview
         if self.lookahead is not None:
             preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
-        return Reference(goal.time, tasks, goal.posture, goal.phase, preview, goal.tuning, diagnostics), state
+        return changed(goal, tasks=tasks, preview=preview, diagnostics=diagnostics), state
 
     def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
         """What will be said of the first task at later times, s, increasing, if nothing unknown comes between.
@@ -184,9 +185,7 @@ def _placed(task: TaskReference, frame: PlannedFrame, time: float) -> TaskRefere
     """A target's task where the plan has it now."""
     pose, velocity, acceleration = _now(frame, time)
     rotation = None if task.rotation is None else pose[1]
-    return TaskReference(
-        task.frame, pose[0], rotation, velocity, acceleration, task.wrench, task.tuning, task.task_rotation
-    )
+    return changed(task, position=pose[0], rotation=rotation, velocity=velocity, acceleration=acceleration)
 
 
 def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, Array]:

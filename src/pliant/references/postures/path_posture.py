@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from pliant.mujoco_model import quaternion
 from pliant.references.postures.posture import PostureOptions, PosturePath, solve_posture
 from pliant.references.source import FrameMotion
 from pliant.references.toolpaths.toolpath import Toolpath
@@ -18,7 +17,7 @@ from pliant.references.trajectories.rotation import QuaternionSpline, Turning
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.trajectory import Trajectory
 from pliant.robot import Robot
-from pliant.spatial import Array
+from pliant.spatial import Array, quaternion
 
 
 @dataclass(frozen=True)

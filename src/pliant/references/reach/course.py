@@ -9,14 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.mujoco_model import quaternion
 from pliant.references.source import FrameMotion
 from pliant.references.toolpaths.pressing import ForceProfile
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.references.trajectories.rotation import QuaternionSpline
 from pliant.references.trajectories.spline import Spline
 from pliant.signals import Reference
-from pliant.spatial import Array
+from pliant.spatial import Array, quaternion
 from pliant.surfaces import SurfaceGeometry
 
 _STEP = 0.1  # s between samples

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pliant.spatial import Array
-from pliant.surfaces.geometry import unit_rows
+from pliant.spatial import Array, unit_rows
 
 
 def tool_rotations(

@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.mujoco_model import quaternion
 from pliant.references.toolpaths.corners import rounded
 from pliant.references.toolpaths.orientation import task_rotations, tool_rotations
 from pliant.references.toolpaths.pace import pace
 from pliant.references.toolpaths.patterns import STEP
 from pliant.references.trajectories.rotation import QuaternionSpline
 from pliant.references.trajectories.spline import Spline
-from pliant.spatial import Array
+from pliant.spatial import Array, quaternion, unit_rows
 from pliant.surfaces import SurfaceGeometry
 
 _KNOT = 0.01  # s between two knots of the splines
@@ -163,7 +162,7 @@ def timed(places: Array, normals: Array, speed: Array, motion: PathMotion, headi
         return np.column_stack([np.interp(done, run.way, column) for column in values.T])
 
     knots, upright = at(places), at(normals)
-    upright = upright / np.linalg.norm(upright, axis=1, keepdims=True)
+    upright = unit_rows(upright)
     rotations = tool_rotations(knots, upright, heading, motion.tilt, motion.lean)
     return Toolpath(
         times,

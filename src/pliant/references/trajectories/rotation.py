@@ -12,7 +12,7 @@ from pliant.errors import ConfigError
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.time_scaling import Warp
 from pliant.references.trajectories.trajectory import vector
-from pliant.spatial import Array, cross
+from pliant.spatial import Array, cross, rotation_of_quaternion, unit_rows
 
 
 class Orientation(NamedTuple):
@@ -79,7 +79,7 @@ class QuaternionSpline(Turning):
     """
 
     def __init__(self, times: Array, quaternions: Array, rests: bool = False) -> None:
-        unit = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
+        unit = unit_rows(quaternions)
         turns = np.concatenate([[1.0], np.where(np.sum(unit[1:] * unit[:-1], axis=1) < 0.0, -1.0, 1.0)])
         # q and −q are one rotation: take the sign that keeps the path short
         self._spline = Spline(times, unit * np.cumprod(turns)[:, None], rests)
@@ -93,7 +93,7 @@ class QuaternionSpline(Turning):
         change = _product(q_ddot.tolist(), inverse)
         squared = _product(spin, spin)
         acceleration = np.array([2.0 * (a - b) for a, b in zip(change[1:], squared[1:], strict=True)])
-        return Orientation(_matrix(q), 2.0 * np.array(spin[1:]), acceleration)
+        return Orientation(rotation_of_quaternion(q), 2.0 * np.array(spin[1:]), acceleration)
 
 
 def _product(a: Sequence[float], b: Sequence[float]) -> tuple[float, float, float, float]:
@@ -104,16 +104,4 @@ def _product(a: Sequence[float], b: Sequence[float]) -> tuple[float, float, floa
         p * u + q * x + y * w - z * v,
         p * v + q * y + z * u - x * w,
         p * w + q * z + x * v - y * u,
-    )
-
-
-def _matrix(q: Array) -> Array:
-    """Rotation matrix (3, 3) of a quaternion (4,) of any length, scalar first."""
-    w, x, y, z = (q / np.sqrt(q @ q)).tolist()
-    return np.array(
-        (
-            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-        )
     )

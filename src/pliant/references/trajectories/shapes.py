@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.references.trajectories.trajectory import Point, Trajectory, positive, vector
-from pliant.spatial import Array
+from pliant.spatial import Array, unit
 
 
 class Harmonics(Trajectory):
@@ -123,12 +123,3 @@ def circle(
     centre = vector(start, "the start", 3) + R * inward
     w = positive(speed, "the speed of a circle", "rad/s")
     return Harmonics(centre, np.stack([-R * inward, R * forward]), (w, w), (0.5 * math.pi, 0.0))
-
-
-def unit(direction: npt.ArrayLike, name: str) -> Array:
-    """A direction (3,) brought to length one. Raises ConfigError if it has no length."""
-    array = vector(direction, name, 3)
-    length = float(np.linalg.norm(array))
-    if not length > 0.0:
-        raise ConfigError(f"{name} needs a length above zero, got {array.tolist()}")
-    return array / length

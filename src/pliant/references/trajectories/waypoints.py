@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.references.trajectories.trajectory import Point, Trajectory, smooth_step, vector
-from pliant.spatial import Array
+from pliant.spatial import Array, unit
 
 SHAPES = ("step", "ramp", "smooth")
 
@@ -75,9 +75,6 @@ def wrench_steps(
     Returns:
         A trajectory of wrenches (6,), moments zero.
     """
-    direction = vector(axis, "the axis of a wrench", 3)
-    length = float(np.linalg.norm(direction))
-    if not length > 0.0:
-        raise ConfigError("the axis of a wrench needs a length above zero")
-    rows = np.outer(vector(forces, "the forces"), np.concatenate([direction / length, np.zeros(3)]))
+    direction = unit(vector(axis, "the axis of a wrench", 3), "the axis of a wrench")
+    rows = np.outer(vector(forces, "the forces"), np.concatenate([direction, np.zeros(3)]))
     return Waypoints(times, rows, shape)

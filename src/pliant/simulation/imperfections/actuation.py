@@ -5,12 +5,12 @@ Sources: [FFMPC] eq. 31; [HapFIC] sec. III, experiment 4.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from pliant.configuration import Config, Range, quantity
+from pliant.sampling import kept_share
 from pliant.simulation.imperfections.link_config import PerJoint
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array, as_vector, clamp
@@ -72,7 +72,7 @@ class Actuation:
         self._noise = as_vector(config.noise, n, "noise")
         self.limit = np.full(n, np.inf if config.peak_torque is None else config.peak_torque)
         """(n,) largest motor torque, N·m"""
-        self._kept = 0.0 if config.bandwidth is None else math.exp(-2.0 * math.pi * config.bandwidth * period)
+        self._kept = 0.0 if config.bandwidth is None else kept_share(config.bandwidth, period)
 
     def init(self, torque: Array, seed: int) -> ActuationState:
         """State before the first step.

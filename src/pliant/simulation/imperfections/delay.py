@@ -33,20 +33,3 @@ class Delay(Generic[T]):
         """Takes the newest value in, gives the oldest out. With 0 periods the value passes straight through."""
         waiting = (*queue, value)
         return waiting[0], waiting[1:]
-
-
-def whole_periods(duration: float, period: float, what: str) -> int:
-    """How many periods a duration is.
-
-    Args:
-        duration: s, not negative.
-        period: s.
-        what: name of the duration, for the error.
-
-    Raises:
-        ConfigError: the duration is not a whole multiple of the period.
-    """
-    ratio = duration / period
-    if duration < 0.0 or abs(ratio - round(ratio)) > 1e-6:
-        raise ConfigError(f"{what} must be a whole multiple of {period:g} s and not negative, got {duration:g} s")
-    return round(ratio)

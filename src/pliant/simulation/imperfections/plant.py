@@ -16,10 +16,11 @@ import numpy.typing as npt
 from pliant.errors import ConfigError
 from pliant.frozen import changed
 from pliant.interfaces import Compensation, Plant
+from pliant.sampling import whole_periods
 from pliant.signals import Command, Measurement, Truth
 from pliant.simulation.imperfections.actuation import Actuation, ActuationState
 from pliant.simulation.imperfections.config import Imperfections
-from pliant.simulation.imperfections.delay import Delay, whole_periods
+from pliant.simulation.imperfections.delay import Delay
 from pliant.simulation.imperfections.ripple import Ripple
 from pliant.simulation.imperfections.sensing import Sensing, SensingState
 from pliant.simulation.imperfections.torque_loop import TorqueLoop, TorqueLoopState

@@ -9,8 +9,9 @@ import numpy as np
 
 from pliant.configuration import Config, quantity
 from pliant.frozen import changed
+from pliant.sampling import whole_periods
 from pliant.signals import Measurement
-from pliant.simulation.imperfections.delay import Delay, whole_periods
+from pliant.simulation.imperfections.delay import Delay
 from pliant.simulation.imperfections.link_config import PerJoint, per_joint
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
 
 from pliant.signals import Estimate
-from pliant.spatial import Array
+from pliant.stopwatch import Stopwatch
 from pliant.studies.haptic.build import planned, robot_of
 from pliant.studies.haptic.cases import CASES
 
@@ -37,21 +36,18 @@ def run(n: int = 20000) -> dict[str, Any]:
     zero, warm_up = np.zeros(robot.n), max(n // 10, 1)
     first = Estimate(-warm_up * config.period, robot.home, zero, zero, zero, {config.frame: np.zeros(6)})
     ref, ctl = source.init(first), controller.init(first)
-    cpu, wall = np.empty(n), np.empty(n)
+    watch = Stopwatch()
     offset = 0.0
     for k in range(-warm_up, n):
         t = config.period * k
         force = np.array([0.0, 0.0, max(20.0 - _STIFFNESS * offset + np.sin(300.0 * t), 0.0), 0.0, 0.0, 0.0])
         q = robot.home + 0.002 * np.sin(7.0 * t + np.arange(robot.n))
         estimate = Estimate(t, q, zero, zero, zero, {config.frame: force})
-        wall_start, cpu_start = time.perf_counter_ns(), time.thread_time_ns()
-        reference, ref = source.step(estimate, ref)
-        _, ctl = controller.step(estimate, reference, ctl)
-        cpu_end, wall_end = time.thread_time_ns(), time.perf_counter_ns()
+        with watch.timed(k >= 0):
+            reference, ref = source.step(estimate, ref)
+            _, ctl = controller.step(estimate, reference, ctl)
         offset = float(np.asarray(reference.diagnostics.get(f"exploration/{config.frame}/offset", np.zeros(3)))[2])
-        if k >= 0:
-            cpu[k], wall[k] = 1e-3 * (cpu_end - cpu_start), 1e-3 * (wall_end - wall_start)
-    return {"steps": n, "unit": "µs", "cpu": _percentiles(cpu), "wall": _percentiles(wall)}
+    return {"steps": n, "unit": "µs", **watch.summary()}
 
 
 def _to_and_fro(duration: float) -> tuple[Any, ...]:
@@ -64,8 +60,3 @@ def _to_and_fro(duration: float) -> tuple[Any, ...]:
         for i in range(1, int(2.0 * duration) + 2)
     ]
     return first, *later
-
-
-def _percentiles(times: Array) -> dict[str, float]:
-    median, p90, p99 = np.percentile(times, [50, 90, 99])
-    return {"median": float(median), "p90": float(p90), "p99": float(p99), "max": float(times.max())}

@@ -17,7 +17,7 @@ from pliant.references.toolpaths.pressing import ForceProfile
 from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, resting, through
 from pliant.robot import Robot, Tool
 from pliant.robots.chain import arm_of
-from pliant.spatial import Array, exp3
+from pliant.spatial import Array, exp3, unit
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.parts import Path, Pose
 from pliant.tasks.task import TaskParts
@@ -100,7 +100,7 @@ def good_place(robot: Robot, frame: str, normal: Array, curvature: float) -> Arr
 
     def free(at: Array, step: float) -> float:
         turned = math.cos(curvature * step) * normal + math.sin(curvature * step) * direction
-        n = turned / np.linalg.norm(turned)
+        n = unit(turned, "a normal")
         x = _heading(robot, frame, n)
         q, target = robot.home, Target(at + step * direction, np.column_stack([x, np.cross(-n, x), -n]))
         for _ in range(3):  # the prior moves along, so that the posture cost stops pulling

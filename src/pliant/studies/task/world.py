@@ -18,7 +18,7 @@ from pliant.simulation import Surface as Touch
 from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.scene import fixed_part
 from pliant.simulation.seeding import generator
-from pliant.spatial import Array
+from pliant.spatial import Array, unit
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import robot_of
 from pliant.studies.task.sensor import sensor_of
@@ -41,7 +41,7 @@ def true_surface(case: TaskCase, believed: SurfaceGeometry, path: Toolpath) -> T
     axis = generator(case.seed, "truth.axis").standard_normal(3) if truth.axis == "random" else np.array(truth.axis)
     if truth.axis == "random":
         axis = axis - normal * float(axis @ normal)
-    axis = axis / np.linalg.norm(axis)
+    axis = unit(axis, "truth.axis")
     shift = _draw(case, "shift", truth.shift) * normal
     turn = math.radians(_draw(case, "tilt", truth.tilt)) * axis
     feel = {
@@ -96,8 +96,8 @@ def pushes_of(case: TaskCase) -> tuple[Push, ...]:
     for one in case.disturbance:
         force = one.push
         if not isinstance(force, tuple):
-            way = rng.standard_normal(3)
-            x, y, z = (float(entry) for entry in one.push * way / np.linalg.norm(way))  # type: ignore[operator]
+            way = unit(rng.standard_normal(3), "a direction")
+            x, y, z = (float(entry) for entry in one.push * way)  # type: ignore[operator]
             force = (x, y, z)
         found.append(Push(one.frame, force, one.start, one.duration))
     return tuple(found)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.spatial import Array
+from pliant.spatial import Array, quaternion
 from pliant.telemetry.channels import Channel
 from pliant.telemetry.mcap.messages import Template, template
 
@@ -146,31 +146,15 @@ def _in_order(channel: Channel) -> tuple[int, ...]:
 
 
 def quaternions(rotations: Array) -> Array:
-    """Unit quaternions of rotation matrices, without branches on the trace that lose digits.
+    """Unit quaternions of rotation matrices.
 
     Args:
         rotations: (n, 3, 3).
 
     Returns:
-        (n, 4) as (w, x, y, z) with w ≥ 0. Each is the largest column of the 4 × 4 matrix `4 q qᵀ`, which the entries
-        of R give.
+        (n, 4) as (w, x, y, z) with w ≥ 0.
     """
-    R = rotations
-    m = {f"{i}{j}": R[:, i, j] for i in range(3) for j in range(3)}
-    K = np.empty((R.shape[0], 4, 4))  # 4 q qᵀ
-    K[:, 0, 0] = 1.0 + m["00"] + m["11"] + m["22"]
-    K[:, 1, 1] = 1.0 + m["00"] - m["11"] - m["22"]
-    K[:, 2, 2] = 1.0 - m["00"] + m["11"] - m["22"]
-    K[:, 3, 3] = 1.0 - m["00"] - m["11"] + m["22"]
-    K[:, 0, 1] = K[:, 1, 0] = m["21"] - m["12"]
-    K[:, 0, 2] = K[:, 2, 0] = m["02"] - m["20"]
-    K[:, 0, 3] = K[:, 3, 0] = m["10"] - m["01"]
-    K[:, 1, 2] = K[:, 2, 1] = m["01"] + m["10"]
-    K[:, 1, 3] = K[:, 3, 1] = m["02"] + m["20"]
-    K[:, 2, 3] = K[:, 3, 2] = m["12"] + m["21"]
-    largest = np.argmax(np.diagonal(K, axis1=1, axis2=2), axis=1)
-    q = K[np.arange(R.shape[0]), largest]
-    q = q / np.linalg.norm(q, axis=1, keepdims=True)
+    q = np.array([quaternion(R) for R in rotations]).reshape(-1, 4)
     return q * np.where(q[:, :1] < 0.0, -1.0, 1.0)
 
 

@@ -1,0 +1,24 @@
+"""What a rigid-body model says beyond pinocchio's own functions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.spatial import Array
+
+
+def mass_matrix(model: pin.Model, data: pin.Data, q: Array) -> Array:
+    """M(q) (n, n), rotor inertia included, kg m² (kg for prismatic joints). Both triangles are filled."""
+    upper = np.triu(np.asarray(pin.crba(model, data, q)))  # pinocchio does not promise the lower one
+    return upper + np.triu(upper, 1).T
+
+
+def joint_motions(model: pin.Model) -> list[Array]:
+    """Motion of each joint in its own axes, (6,) linear first: of unit length, either linear or angular."""
+    data = model.createData()
+    neutral = pin.neutral(model)
+    return [
+        np.array(pin.computeJointJacobian(model, data, neutral, index)).reshape(6, -1)[:, model.joints[index].idx_v]
+        for index in range(1, model.njoints)
+    ]
