@@ -21,6 +21,7 @@ import pinocchio as pin
 from pliant import _mpc
 from pliant.mpc.chain import chain_from_robot
 from pliant.robot import Robot
+from pliant.stopwatch import percentiles
 
 Vector = np.ndarray
 DT, PERIOD, HORIZON = 3e-3, 2e-3, 5  # s, s, nodes
@@ -41,17 +42,6 @@ CASES = [
     ("torque_feedback", 3, True),
     ("free", 0, False),
 ]
-
-
-def percentiles(seconds: list[float]) -> dict[str, float]:
-    """Median, p90, p99 and maximum in µs."""
-    values = 1e6 * np.array(seconds)
-    return {
-        "median_us": float(np.median(values)),
-        "p90_us": float(np.percentile(values, 90)),
-        "p99_us": float(np.percentile(values, 99)),
-        "max_us": float(np.max(values)),
-    }
 
 
 def yardstick(robot: Robot, calls: int = 5000) -> float:
@@ -170,8 +160,8 @@ def solve_times(loop: Loop, cycles: int, pause: float = 0.0) -> dict[str, Any]:
             time.sleep(pause)
     kept = slice(cycles // 20, None)
     return {
-        "cpu": percentiles(cpu[kept]),
-        "wall": percentiles(wall[kept]),
+        "cpu": percentiles(1e6 * np.array(cpu[kept])),
+        "wall": percentiles(1e6 * np.array(wall[kept])),
         "iterations": float(np.mean([s.iterations for s in solutions])),
         "evaluations": float(np.mean([s.evaluations for s in solutions])),
         "factorisations": float(np.mean([s.qp_iterations for s in solutions])),
@@ -219,7 +209,7 @@ def measure(
                 loop = Loop(robot, frame, kind, dim, bounds, seed=0, horizon=horizon)
                 row: dict[str, Any] = {"isa": isa, "kind": kind, "dim": dim, "bounds": bounds, "yardstick_us": unit}
                 row |= solve_times(loop, cycles, pause) | node_times(loop)
-                row["yardsticks"] = row["cpu"]["median_us"] / unit
+                row["yardsticks"] = row["cpu"]["median"] / unit
                 yield row
     finally:
         _mpc.use_instruction_set(chosen)
@@ -235,7 +225,7 @@ def line(row: dict[str, Any]) -> str:
     """One row of the table under `HEADING`."""
     cpu = row["cpu"]
     case = f"{row['isa']:8} {row['kind']:18}{row['dim']:2} {row['bounds']!s:6}"
-    times = f"{cpu['median_us']:9.1f}{cpu['p90_us']:8.1f}{cpu['p99_us']:8.1f}{row['yardsticks']:9.2f}"
+    times = f"{cpu['median']:9.1f}{cpu['p90']:8.1f}{cpu['p99']:8.1f}{row['yardsticks']:9.2f}"
     work = f"{row['iterations']:7.2f}{row['factorisations']:6.2f}{100 * row['converged']:8.2f}"
     shares = "".join(f"{100 * share:5.0f}" for share in row["active"].values()) if row["bounds"] else ""
     return f"{case}{times}{work}{row['calc_us']:6.2f}{row['calc_diff_us']:6.2f}      {shares}"

@@ -7,20 +7,22 @@ import math
 from pliant.errors import ConfigError
 
 
-def whole_periods(duration: float, period: float, what: str) -> int:
+def whole_periods(duration: float, period: float, what: str, of: str = "") -> int:
     """How many periods a duration is.
 
     Args:
         duration: s, not negative.
         period: s, above zero.
         what: name of the duration, for the error.
+        of: name of the period, for the error.
 
     Raises:
         ConfigError: the duration is not a whole multiple of the period.
     """
     ratio = duration / period
     if duration < 0.0 or abs(ratio - round(ratio)) > 1e-6:
-        raise ConfigError(f"{what} must be a whole multiple of {period:g} s and not negative, got {duration:g} s")
+        whole = f"a whole multiple of {of + ' of ' if of else ''}{period:g} s"
+        raise ConfigError(f"{what} must be {whole} and not negative, got {duration:g} s")
     return round(ratio)
 
 

@@ -12,7 +12,10 @@ def substeps(period: float, physics_step: float) -> int:
     """Physics steps in a control period, both in s. Raises ConfigError if it is not a whole number of them."""
     if not (physics_step > 0.0 and period > 0.0):
         raise ConfigError(f"period and physics step must be above zero, got {period} s and {physics_step} s")
-    return whole_periods(period, physics_step, "the control period")
+    count = whole_periods(period, physics_step, "the control period", "the physics step")
+    if count < 1:
+        raise ConfigError(f"the control period must be at least the physics step, got {period} s and {physics_step} s")
+    return count
 
 
 def shares(total: int, parts: int) -> list[int]:

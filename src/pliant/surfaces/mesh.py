@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError
-from pliant.spatial import Array, frame_with_z_along
+from pliant.spatial import Array, frame_with_z_along, unit_rows
 from pliant.surfaces.distance_field import SampledDistance
-from pliant.surfaces.geometry import Nearest, SurfaceGeometry, unit_rows
+from pliant.surfaces.geometry import Nearest, SurfaceGeometry
 from pliant.surfaces.mesh_file import read_mesh
 
 _STRIDE = 1e-3  # m of a geodesic at once
