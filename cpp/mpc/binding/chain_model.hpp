@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "../dispatch.hpp"
+#include "../models.hpp"
 #include "../validate.hpp"
 #include "arrays.hpp"
 
@@ -115,10 +116,6 @@ inline void init_model(PyModel* self, const std::string& kind, int contact_dim, 
   m.baumgarte_velocity = baumgarte.second;
   validate(m);
   new (self) PyModel{m};
-}
-
-inline int state_dim(const ModelData& m, int dof) {
-  return 2 * dof + (m.kind == Kind::force_feedback ? m.contact_dim : m.kind == Kind::torque_feedback ? dof : 0);
 }
 
 inline void bind_chain_and_model(nb::module_& m) {

@@ -25,8 +25,7 @@ void roll_ahead(const Settings& s, bool touching, State& state, double* x) {
   if (under_way + late == 0) return;
   NodeData& node = state.memory.contact;
   node.contact_active = touching;
-  ModelData model = s.model;
-  if (s.torque_state()) model.kind = Kind::classical;
+  const ModelData model = driven_model(s.model);
   validate(node, 0, n, model, s.tick);
   const OwnedEngine& engine = state.prediction;
   if (s.force_state() && model.integrator == Integrator::exponential)

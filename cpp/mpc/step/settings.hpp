@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "../problem.hpp"
+#include "../models.hpp"
 
 namespace pliant::mpc::step {
 
@@ -47,8 +47,7 @@ struct Settings {
   int N() const { return options.horizon; }
   bool force_state() const { return model.kind == Kind::force_feedback; }
   bool torque_state() const { return model.kind == Kind::torque_feedback; }
-  int extra() const { return force_state() ? m() : torque_state() ? n() : 0; }
-  int nx() const { return 2 * n() + extra(); }
+  int nx() const { return state_dim(model, n()); }
   int normal() const { return m() == 1 ? 0 : 2; }  // index of the normal force among the contact's components
 };
 

@@ -5,21 +5,10 @@
 #include <cstring>
 #include <new>
 
+#include "../models.hpp"
+
 namespace pliant::mpc::step {
 namespace {
-
-// What moves the robot over the delay: with a joint torque in the state, the rigid model without it.
-ModelData moving(ModelData model) {
-  if (model.kind == Kind::torque_feedback) model.kind = Kind::classical;
-  return model;
-}
-
-int state_size(const ChainData& chain, const ModelData& model) {
-  const int extra = model.kind == Kind::force_feedback    ? model.contact_dim
-                    : model.kind == Kind::torque_feedback ? chain.dof
-                                                          : 0;
-  return 2 * chain.dof + extra;
-}
 
 double clipped(double value, double limit) {
   if (std::isnan(value)) return 0;
@@ -56,7 +45,7 @@ State::State(const Settings& s, double time, const double* q, const double* v, c
       options(s.options),
       tick(s.tick),
       solver(chain, model, options),
-      prediction(chain, moving(model), {1, tick, 0, 1, 1, false}) {
+      prediction(chain, driven_model(model), {1, tick, 0, 1, 1, false}) {
   const size_t n = size_t(s.n());
   memory.next_solve = time;
   std::memcpy(memory.q, q, n * sizeof(double));
@@ -76,7 +65,7 @@ State::State(const Memory& m, const Series& s, const Kept& kept, const ChainData
       options(o),
       tick(t),
       solver(chain, model, options),
-      prediction(chain, moving(model), {1, tick, 0, 1, 1, false}) {
+      prediction(chain, driven_model(model), {1, tick, 0, 1, 1, false}) {
   restore(kept);
 }
 
@@ -85,7 +74,7 @@ State::State(const State& other)
 
 Kept State::kept() const {
   const size_t N = size_t(options.horizon), nodes = options.bounds ? N + 1 : 0;
-  Kept found{std::vector<double>((N + 1) * size_t(state_size(chain, model))),
+  Kept found{std::vector<double>((N + 1) * size_t(state_dim(model, chain.dof))),
              std::vector<double>(N * size_t(chain.dof)), std::vector<double>(nodes * multipliers_per_node)};
   solver.table->get_plan(solver.engine, found.xs.data(), found.us.data());
   solver.table->get_multipliers(solver.engine, found.multipliers.data());
