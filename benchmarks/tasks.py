@@ -36,6 +36,8 @@ def run(task: str, robot: str, seed: int, asked: argparse.Namespace) -> Result |
     """One run, or why it could not begin."""
     study = study_of(task)
     case = merged(study.case(task), {"robot": robot, "controller": asked.controller, "seed": seed})
+    if asked.rotors is not None:
+        case = merged(case, {"rotor_inertia": asked.rotors})
     if asked.size:
         case = merged(case, {"path": {"size": tuple(float(length) for length in asked.size.split(","))}})
     try:
@@ -85,6 +87,7 @@ def main() -> None:
     parser.add_argument("--robots", default=",".join(ROBOTS))
     parser.add_argument("--controller", default="offset-free-mpc")
     parser.add_argument("--seeds", type=int, default=None, help="default: 3, or 1 with --perfect")
+    parser.add_argument("--rotors", type=float, help="inertia of every joint's motor, kg m²; default: the catalogue's")
     parser.add_argument("--size", default="", help="of the raster, m,m; default: the task's")
     parser.add_argument("--perfect", action="store_true")
     parser.add_argument("--docs", nargs=2, metavar=("FILE", "NAME"), help="where the table is written, too")

@@ -153,6 +153,12 @@ class StackConfig(ControllerConfig):
         description="of every joint, added by the controller; what a plain spring needs to come to rest",
         json_schema_extra={"unit": "N·m s/rad", "minimum": 0.0, "maximum": 20.0},
     )
+    force_damping: float = Field(
+        default=0.0,
+        ge=0.0,
+        description="of a frame's motion along the force that is asked of it; damps the contact and not the path",
+        json_schema_extra={"unit": "N·s/m", "minimum": 0.0, "maximum": 1000.0},
+    )
     gravity_compensation: bool = Field(
         default=False, description="add the model's gravity torque; off where the robot compensates itself"
     )

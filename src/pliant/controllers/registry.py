@@ -26,6 +26,7 @@ def build_stack(robot: Robot, config: StackConfig, period: float) -> Stack:
         law=config.law,
         phases=config.phases.settings(),
         joint_damping=config.joint_damping,
+        force_damping=config.force_damping,
         gravity_compensation=config.gravity_compensation,
     )
 

@@ -58,8 +58,8 @@ class Stack(Controller[StackState]):
     Where a moment would exceed its F_max, the three shrink together. Each axis of the capped law pays for what
     sampling, clamps and changes of its tuning let out, see `passivity_account`.
 
-    Forces come from position errors alone: `TaskReference.velocity`, `.acceleration` and `.wrench` are not used. A task
-    whose reference has no rotation leaves the orientation free for as long.
+    Forces come from position errors alone: `TaskReference.velocity` and `.acceleration` are not used, `.wrench` for the
+    direction of `force_damping` alone. A task whose reference has no rotation leaves the orientation free for as long.
 
     `Command.diagnostics` holds the energy ledger and the state of every axis; `channels` says what is in it.
     """
@@ -73,6 +73,7 @@ class Stack(Controller[StackState]):
         law: Law = Law.CAPPED,
         phases: PhaseSettings | None = None,
         joint_damping: float = 0.0,
+        force_damping: float = 0.0,
         gravity_compensation: bool = False,
     ) -> None:
         """
@@ -83,19 +84,20 @@ class Stack(Controller[StackState]):
             law: force on the way back; `capped` unless you compare.
             phases: thresholds of the phase logic.
             joint_damping: N·m·s/rad, times the estimated joint velocity, against it; the attractor needs none.
+            force_damping: N·s/m, times the frame's velocity along the force that its reference asks for, against it.
             gravity_compensation: adds the model's gravity torque; leave it off where the robot compensates itself.
 
         Raises:
             ConfigError: no task, two tasks of one label, or a period that is not above zero.
             RobotError: a frame that the robot does not have.
         """
-        check_stack(tasks, period, joint_damping)
+        check_stack(tasks, period, joint_damping, force_damping)
         self.robot = robot
         self.tasks = tuple(tasks)
         self.period = period
         self.law = Law(law)
         self.phases = phases or PhaseSettings()
-        self.joint_damping = joint_damping
+        self.joint_damping, self.force_damping = joint_damping, force_damping
         self.gravity_compensation = gravity_compensation
         self._frames = [robot.frame_id(task.frame) for task in tasks]
         self._core = _impedance.Stack(
@@ -154,7 +156,7 @@ class Stack(Controller[StackState]):
             pin.computeJointJacobians(model, work.data, estimate.q)
             for frame in self._frames:
                 pin.updateFramePlacement(model, work.data, frame)
-            bias = self._bias(estimate, work.data)
+            bias = self._bias(estimate, reference, work.data)
             code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune)
         except (ValueError, TypeError, RuntimeError) as error:
             raise ShapeError(self._misshapen(estimate, desired, error)) from error
@@ -164,15 +166,27 @@ class Stack(Controller[StackState]):
         command = Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out))
         return command, StackState(memory, tunings, work)
 
-    def _bias(self, estimate: Estimate, data: pin.Data) -> Array | None:
+    def _bias(self, estimate: Estimate, reference: Reference, data: pin.Data) -> Array | None:
         """(n,) N·m beside the tasks; None for nothing."""
         gravity = (
             pin.computeGeneralizedGravity(self.robot.model, data, estimate.q) if self.gravity_compensation else None
         )
-        if self.joint_damping == 0.0:
+        if self.joint_damping == 0.0 and self.force_damping == 0.0:
             return gravity
         damping = -self.joint_damping * self.robot.vector(estimate.v, "v")
+        for place, frame in enumerate(self._frames if self.force_damping > 0.0 else ()):
+            damping = damping - self.force_damping * self._along_force(reference, place, frame, data, estimate.v)
         return damping if gravity is None else gravity + damping
+
+    def _along_force(self, reference: Reference, place: int, frame: int, data: pin.Data, v: Array) -> Array:
+        """(n,) Jᵀ n nᵀ J v, n the direction of the force that is asked for; zero without one."""
+        force = target_of(reference, place, self.tasks[place].frame).wrench[:3]
+        size = float(np.linalg.norm(force))
+        if size == 0.0:
+            return np.zeros(self.robot.n)
+        J = pin.getFrameJacobian(self.robot.model, data, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
+        along = np.array(J)[:3].T @ (force / size)
+        return along * float(along @ v)
 
     def kept_back(self, state: StackState, torque: Array) -> StackState:
         """Books that part of the last torque, (n,) N·m, was not sent: the accounts of the tasks bear what it costs."""

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+import pinocchio as pin
 from pydantic import Field
 
 from pliant.controllers.attractor import Law
@@ -18,9 +20,12 @@ from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.interfaces import Needs, ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
+from pliant.rigid_body import mass_matrix
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
+_PROMPT = 1e-3  # s; a loop that is not later needs no damping of its contacts
+_DAMPED = 0.4  # of Λ over the lateness: what a loop that late damps a mass Λ with; π/2 is the end of stability
 _SLOWER = 0.1  # k_I times the loop's lateness, at most: force is regulated ten times more slowly than the loop answers
 
 
@@ -56,18 +61,32 @@ def _needs(config: HapticConfig) -> Needs:
 
 def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticConfig:
     """The stack that suits; where phases say when to touch, a frame that should and does not goes and looks. In a late
-    loop force is regulated more slowly: k_I is a tenth of 1 / (period and delays) at most."""
-    exploration = config.exploration
+    loop force is regulated more slowly, k_I is a tenth of 1 / (period and delays) at most, and the motion along the
+    force is damped with 0.4 Λ / (period and delays), Λ the mass that the frame has there: the tool on its contact is a
+    spring that nothing else damps, and a late stiffness drives it."""
+    exploration, impedance = config.exploration, suggest_stack(robot, config.impedance, believed)
     if exploration is not None:
         late = believed.period + believed.sensing_delay + believed.computation_delay
+        if late > _PROMPT:
+            damping = _DAMPED * _mass_along(robot, believed) / late
+            impedance = impedance.model_copy(update={"force_damping": damping})
         changes = {
             "gain": min(exploration.gain, _SLOWER / late),
             "seek": exploration.seek or any(believed.phases.values()),
         }
         exploration = exploration.model_copy(update=changes)
-    return config.model_copy(
-        update={"impedance": suggest_stack(robot, config.impedance, believed), "exploration": exploration}
-    )
+    return config.model_copy(update={"impedance": impedance, "exploration": exploration})
+
+
+def _mass_along(robot: Robot, believed: Believed) -> float:
+    """kg that the pressing frame has at home along the believed surface's normal, upwards where there is none."""
+    surface, model = believed.surface, robot.model
+    normal = np.array([0.0, 0.0, 1.0]) if surface is None else np.array(surface.normal(surface.top()))
+    frame = robot.frame_id(believed.presses or believed.frames[0])
+    data = model.createData()
+    J = pin.computeFrameJacobian(model, data, robot.home, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
+    along = normal @ np.array(J)[:3]
+    return 1.0 / float(along @ np.linalg.solve(mass_matrix(model, data, robot.home), along))
 
 
 def _filter(source: ReferenceSource[Any], robot: Robot, config: HapticConfig) -> ReferenceSource[Any]:
