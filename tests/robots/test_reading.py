@@ -13,6 +13,7 @@ import pytest
 from pliant.errors import RobotError
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
+from pliant.robots import locate
 from pliant.robots.chain import arm_of
 from pliant.robots.home import _inner_range, bent_home
 from tests.test_robot_files import MJCF, arm, load, mass_and_bias, mjcf, mujoco_mass_and_bias, urdf
@@ -138,17 +139,34 @@ def test_home_of_the_panda_is_its_ready_pose() -> None:
     np.testing.assert_allclose(rotation[:, 2], [0.0, 0.0, -1.0], atol=1e-9)
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5e"])
+@pytest.mark.parametrize("name", ["panda", "ur5e", "lwr4", "iiwa14"])
 def test_a_home_that_is_searched_for_is_in_front_and_points_down(name: str) -> None:
     model = Robot.load(name).model
     arm_ = arm_of(model)
     assert arm_ is not None
-    q = bent_home(model, arm_)
+    q, down = bent_home(model, arm_)
+    assert down
     data = model.createData()
     pin.framesForwardKinematics(model, data, q)
     shoulder, pose = np.array(data.oMi[arm_.joints[1]].translation), data.oMf[arm_.flange]
     np.testing.assert_allclose(pose.translation, shoulder + arm_.reach * np.array([0.5, 0.0, 0.05]), atol=0.01)
     assert pose.rotation[2, 2] < -0.99
+
+
+def test_an_arm_that_cannot_point_down_is_said_to(tmp_path: Path) -> None:
+    """A panda whose wrist hardly bends, so that its flange looks up; and the panda."""
+    text = locate("panda").read_text()
+    for low, high, down in ((2.9, 3.0, False), (-0.0175, 3.7525, True)):
+        path = tmp_path / "arm.urdf"
+        path.write_text(
+            text.replace('lower="-0.0175" upper="3.7525"', f'lower="{low}" upper="{high}"').replace(
+                'lower="-1.7628" upper="1.7628"',
+                'lower="-0.1" upper="0.1"' if not down else 'lower="-1.7628" upper="1.7628"',
+            )
+        )
+        robot = Robot.load(path)
+        assert any("no pose with the flange down" in note for note in robot.notes) is not down
+        assert ("flange down" in robot.home_from) is down
 
 
 def test_a_searched_home_lies_in_the_inner_part_of_a_range_that_is_not_about_zero() -> None:

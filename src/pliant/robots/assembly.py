@@ -57,6 +57,8 @@ def assemble(
         robot.model, robot.visual, robot.home = lock(robot.name, robot.model, robot.visual, robot.home, joints)
     notes, robot.faults = check_inertia(robot.model, path)
     robot.notes += tuple(notes)
+    if entry is not None and entry.home:  # then nobody asks for zero
+        robot.notes = tuple(note for note in robot.notes if not note.startswith("zero lies outside"))
     _add_arm_frames(robot, entry)
     _settle_home(robot, None if isinstance(home, str) else home)
     if not robot.faults:
@@ -140,8 +142,10 @@ def _settle_home(robot: Assembly, home: npt.ArrayLike | None) -> None:
         if arm is None:
             robot.home, robot.home_from = zero_home(robot.model), "zero, or the nearest angle within the limits"
             return
-        robot.home, robot.home_from = bent_home(robot.model, arm), "searched: bent, away from singularities"
-        robot.notes += (f"nobody says a home: {np.round(robot.home, 2).tolist()} was searched for",)
+        robot.home, down = bent_home(robot.model, arm)
+        robot.home_from = f"searched: bent, away from singularities{', flange down' if down else ''}"
+        aim = "" if down else ", no pose with the flange down was found"
+        robot.notes += (f"nobody says a home: {np.round(robot.home, 2).tolist()} was searched for{aim}",)
 
 
 def _checked(robot: Assembly, home: npt.ArrayLike) -> Array:

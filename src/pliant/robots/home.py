@@ -13,27 +13,31 @@ from pliant.robots.chain import Arm
 from pliant.spatial import Array
 
 _DRAWS, _STARTS, _STEPS = 200, 10, 80
-_INNER = 0.8
-"""share of each joint's range"""
+_INNER, _REACHED = 0.8, 0.95
+"""share of each joint's range in which poses are drawn and sought; the wider one where the other has none"""
 _FULL = 6
 """joints with which a place and a direction can be reached"""
 _TOLERANCE = 1e-3
 """m, and 1 for the direction"""
 
 
-def bent_home(model: pin.Model, arm: Arm) -> Array:
-    """A configuration (n,) of the arm; joints beside the arm are at zero, or at the nearest angle in their limits."""
+def bent_home(model: pin.Model, arm: Arm) -> tuple[Array, bool]:
+    """A configuration (n,) of the arm, and whether its flange points down.
+
+    Joints beside the arm are at zero, or at the nearest angle in their limits.
+    """
     data = model.createData()
     low, high = _inner_range(model, arm)
     rng = np.random.default_rng(0)
     draws = [np.where(high > low, rng.uniform(low, np.maximum(high, low + 1e-12)), low) for _ in range(_DRAWS)]
     draws.sort(key=lambda q: -_comfort(model, data, arm, q))
-    if len(arm.joints) >= _FULL:
-        reached = [_reach_down(model, data, arm, q, low, high) for q in draws[:_STARTS]]
+    for share in (_INNER, _REACHED) if len(arm.joints) >= _FULL else ():
+        ends = _inner_range(model, arm, share)
+        reached = [_reach_down(model, data, arm, q, *ends) for q in draws[:_STARTS]]
         found = [q for q in reached if q is not None]
         if found:
-            return max(found, key=lambda q: _comfort(model, data, arm, q))
-    return draws[0]
+            return max(found, key=lambda q: _comfort(model, data, arm, q)), True
+    return draws[0], False
 
 
 def zero_home(model: pin.Model) -> Array:
@@ -41,7 +45,7 @@ def zero_home(model: pin.Model) -> Array:
     return np.clip(np.zeros(model.nq), np.array(model.lowerPositionLimit), np.array(model.upperPositionLimit))
 
 
-def _inner_range(model: pin.Model, arm: Arm) -> tuple[Array, Array]:
+def _inner_range(model: pin.Model, arm: Arm, share: float = _INNER) -> tuple[Array, Array]:
     still = zero_home(model)
     low, high = still.copy(), still.copy()
     for joint in arm.joints:
@@ -49,7 +53,7 @@ def _inner_range(model: pin.Model, arm: Arm) -> tuple[Array, Array]:
         lower = max(float(model.lowerPositionLimit[at]), -np.pi)
         upper = min(float(model.upperPositionLimit[at]), np.pi)
         if lower < upper:
-            middle, half = 0.5 * (lower + upper), 0.5 * _INNER * (upper - lower)
+            middle, half = 0.5 * (lower + upper), 0.5 * share * (upper - lower)
             low[at], high[at] = middle - half, middle + half
     return low, high
 
