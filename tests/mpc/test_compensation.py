@@ -14,8 +14,8 @@ from pliant.errors import ConfigError, SignalError
 from pliant.experiments.config import merged
 from pliant.mpc import CONTROLLERS, Compensation, ForceFeedbackMpc, MpcController, OffsetFreeMpc
 from pliant.mpc.config import Bounds
-from pliant.mpc.twin.compensation import Compensator
 from pliant.signals import Estimate
+from tests.twins.mpc_step.compensation import Compensator
 
 from .test_controller import ROBOT, _estimate, _reference
 

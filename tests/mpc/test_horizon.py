@@ -9,8 +9,8 @@ import pytest
 
 from pliant.errors import ConfigError, SignalError
 from pliant.mpc.horizon import HorizonReference
-from pliant.mpc.twin.horizon import along_horizon, require_pushing
 from pliant.signals import Preview, Reference, TaskReference
+from tests.twins.mpc_step.horizon import along_horizon, require_pushing
 
 
 def _preview(step: float, count: int) -> Preview:

@@ -10,8 +10,8 @@ import pytest
 
 from pliant.mpc import ClassicalMpc, ForceFeedbackMpc, TorqueFeedbackMpc
 from pliant.mpc.controller import MpcController
-from pliant.mpc.twin.plan import Plan, plan_of, torque_from, usable
 from pliant.signals import Estimate, Reference, TaskReference
+from tests.twins.mpc_step.plan import Plan, plan_of, torque_from, usable
 
 from .problems import polishing_arm
 

@@ -13,10 +13,10 @@ from pliant.interfaces import ReferenceSource
 from pliant.mpc import ClassicalMpc, Contact, ForceFeedbackMpc, MpcConfig, TorqueFeedbackMpc
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.make_problem import problem_from_robot
-from pliant.mpc.twin.prediction import DelayPrediction
 from pliant.robot import Robot, Tool
 from pliant.signals import Estimate, Reference, TaskReference, Tick
 from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Scene, Surface, table
+from tests.twins.mpc_step.prediction import DelayPrediction
 
 PERIOD, DELAY = 1e-3, 5  # s, periods
 ROBOT = Robot.load("iiwa14", locked={"A7": 0.0}, tool=Tool()).with_contact("tool", 0.015)

@@ -25,9 +25,9 @@ from pliant.mpc import (
     OffsetFreeMpc,
     TorqueFeedbackMpc,
 )
-from pliant.mpc.twin.controller import TwinController
 from pliant.signals import Command, Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array, exp3
+from tests.twins.mpc_step.controller import TwinController
 
 from .problems import polishing_arm
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pliant import _mpc
+from pliant._mpc import ControllerState as MpcState
 from pliant.interfaces import Controller, Lookahead, Needs
 from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
@@ -24,11 +22,6 @@ from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
 
-if TYPE_CHECKING:
-    from pliant._mpc import ControllerState as MpcState
-else:
-    MpcState = getattr(_mpc, "ControllerState", object)
-
 
 class MpcController(Controller[MpcState]):
     """Solves the predictive problem every `config.period` and sends its first torque.
@@ -40,7 +33,7 @@ class MpcController(Controller[MpcState]):
     disturbance out of what it sends.
 
     This class is the handle of one compiled call (`cpp/mpc/step`), which does everything between estimate and torque;
-    `pliant.mpc.twin` says the same in Python. Its state can be copied (`copy.copy`) and pickled.
+    `tests/twins/mpc_step` says the same in Python. Its state can be copied (`copy.copy`) and pickled.
 
     Args:
         robot: serial, at most 8 joints.
@@ -58,10 +51,6 @@ class MpcController(Controller[MpcState]):
         self.problem: MpcProblem = problem_from_robot(robot, config)
         self.chain = chain_from_robot(robot, config.frame, config.contact.frame)
         self.delays = delays_of(config.compensation, period or config.period)
-        self._twin: Any = None
-        if not hasattr(_mpc, "ControllerStep"):  # a core that was built from older sources
-            self._twin = importlib.import_module("pliant.mpc.twin.controller").TwinController(robot, config, period)
-            return
         self._core = kernel_step(self.problem, self.chain, self.delays, period or config.period)
         self._rows = (3, robot.n)
 
@@ -96,13 +85,9 @@ class MpcController(Controller[MpcState]):
         frame = self.problem.contact_frame
         if needs_of(self.config).wrench and estimate.wrenches.get(frame) is None:
             raise no_wrench(frame, estimate)
-        if self._twin is not None:
-            return self._twin.init(estimate)
         return self._core.init(estimate.time, q, v, estimate.torque_sent)
 
     def step(self, estimate: Estimate, reference: Reference, state: MpcState) -> tuple[Command, MpcState]:
-        if self._twin is not None:
-            return self._twin.step(estimate, reference, state)
         out = np.empty(self._rows)
         refusal = self._core.step(estimate, reference, state, out)
         if refusal is not None:

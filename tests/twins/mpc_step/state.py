@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import pinocchio as pin
 
 from pliant import _mpc
-from pliant.mpc.twin.compensation import CompensationState
-from pliant.mpc.twin.plan import Plan
 from pliant.spatial import Array
+from tests.twins.mpc_step.compensation import CompensationState
+from tests.twins.mpc_step.plan import Plan
 
 
 @dataclass(slots=True)

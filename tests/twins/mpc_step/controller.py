@@ -17,14 +17,14 @@ from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.make_problem import problem_from_robot
 from pliant.mpc.needs import needs_of
 from pliant.mpc.problem import MpcProblem
-from pliant.mpc.twin import channels
-from pliant.mpc.twin.compensation import Compensator
-from pliant.mpc.twin.horizon import along_horizon, require_pushing
-from pliant.mpc.twin.plan import SafeTorque, plan_of, torque_from, usable
-from pliant.mpc.twin.state import MpcState
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array, all_finite, clamp
+from tests.twins.mpc_step import channels
+from tests.twins.mpc_step.compensation import Compensator
+from tests.twins.mpc_step.horizon import along_horizon, require_pushing
+from tests.twins.mpc_step.plan import SafeTorque, plan_of, torque_from, usable
+from tests.twins.mpc_step.state import MpcState
 
 _TICK = 1e-9  # s; smaller than any period, larger than the rounding of a clock
 

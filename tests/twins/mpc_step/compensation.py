@@ -16,9 +16,9 @@ from pliant.errors import ConfigError, SignalError
 from pliant.mpc.config import Compensation
 from pliant.mpc.horizon import HorizonReference
 from pliant.mpc.problem import MpcProblem
-from pliant.mpc.twin.prediction import DelayPrediction
 from pliant.signals import Estimate, Reference
 from pliant.spatial import Array
+from tests.twins.mpc_step.prediction import DelayPrediction
 
 
 @dataclass(frozen=True, slots=True)

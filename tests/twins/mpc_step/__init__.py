@@ -1,0 +1,1 @@
+"""A predictive controller's step in Python: the twin of `cpp/mpc/step`."""
