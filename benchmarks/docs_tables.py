@@ -15,7 +15,7 @@ from pliant.experiments.base import Result
 from pliant.experiments.registry import get_study
 from pliant.experiments.results import key, read_results
 from pliant.experiments.summarise import summarised
-from pliant.telemetry.summary import Case, Metric, Summary
+from pliant.telemetry.summary import CaseSummary, Metric, Summary
 from pliant.telemetry.table import number, target_text, value_text
 
 AXES = ("RMSE x", "RMSE y", "RMSE z")
@@ -63,11 +63,11 @@ def _value(metric: Metric) -> str:
     return "< 1e-6" if 0.0 < metric.value < 1e-6 else value_text(metric)
 
 
-def _found(row: Case, name: str) -> Metric | None:
+def _found(row: CaseSummary, name: str) -> Metric | None:
     return next((metric for metric in row.metrics if metric.name == name), None)
 
 
-def _three(row: Case) -> tuple[str, str, str]:
+def _three(row: CaseSummary) -> tuple[str, str, str]:
     found = [metric for name in AXES if (metric := _found(row, name))]
     papers, targets = [m.paper for m in found], [m.target for m in found]
     paper = "–" if None in papers else " / ".join(f"{p:g}" for p in papers if p is not None)
@@ -75,7 +75,7 @@ def _three(row: Case) -> tuple[str, str, str]:
     return " / ".join(value_text(m) for m in found), paper, target
 
 
-def _compared(row: Case | None) -> str:
+def _compared(row: CaseSummary | None) -> str:
     if row is None:
         return "–"
     failed = f"{len(row.failures)} of {row.runs} failed" if row.failures else ""

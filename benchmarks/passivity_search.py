@@ -20,7 +20,7 @@ from pliant.controllers.passivity_account import ACCOUNT
 from pliant.controllers.passivity_search import Draw, Sampling, search
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.signals import ImpedanceTuning
-from pliant.studies.haptic.steps_config import Impedance
+from pliant.studies.haptic.steps_config import FootImpedance
 
 BOUNDS = ((1e-3, math.inf), (1e-3, 300.0), (3e-3, 100.0))
 """(period in s, largest acceleration in m/s²)"""
@@ -44,7 +44,7 @@ def known() -> Iterator[tuple[str, ForceProfile, bool]]:
                     one(task.tuning, axis, task.shape),
                     axis > 0,
                 )
-    leg = Impedance()
+    leg = FootImpedance()
     for axis in (0, 2):
         yield f"leg {'xyz'[axis]}", one(leg.tuning(), axis, leg.profile), False
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from pliant.controllers.passivity_account import ACCOUNT, Account, Motion, likely_step
+from pliant.controllers.passivity_account import ACCOUNT, Account, ErrorMotion, likely_step
 from pliant.controllers.profiles import ForceProfile
 from pliant.signals import ImpedanceTuning
 
@@ -19,11 +19,11 @@ def test_the_largest_surprise_decays_with_its_own_time() -> None:
     profile = ForceProfile.of(ImpedanceTuning(500.0 * one, 50.0 * one, 0.3 * one))
     account = Account(period, one, one)
     state = account.init(profile, np.zeros(1))
-    jumped = account.book(state, np.zeros(1), np.zeros(1), 0.01 * one, Motion(0.01 * one, np.zeros(1)))
+    jumped = account.book(state, np.zeros(1), np.zeros(1), 0.01 * one, ErrorMotion(0.01 * one, np.zeros(1)))
     assert jumped.surprise[0] == pytest.approx(0.01)
     expected = 0.01
     for _ in range(20):
-        jumped = account.book(jumped, 0.01 * one, np.zeros(1), 0.01 * one, Motion(0.01 * one, np.zeros(1)))
+        jumped = account.book(jumped, 0.01 * one, np.zeros(1), 0.01 * one, ErrorMotion(0.01 * one, np.zeros(1)))
         expected *= math.exp(-period / ACCOUNT.surprise_time)
         assert jumped.surprise[0] == pytest.approx(expected, rel=1e-9)
 
@@ -39,7 +39,7 @@ def test_a_step_that_comes_again_is_foreseen(cycle: list[float]) -> None:
     state = account.init(profile, error)
     for tick in range(40 * len(cycle)):
         moved = error + 1e-3 * cycle[tick % len(cycle)]
-        state = account.book(state, error, np.zeros(1), moved, Motion(moved, np.zeros(1)))
+        state = account.book(state, error, np.zeros(1), moved, ErrorMotion(moved, np.zeros(1)))
         error = moved
     assert likely_step(state)[0] == pytest.approx(1e-3 * cycle[0], abs=1e-9)
 
@@ -51,5 +51,5 @@ def test_a_smooth_motion_is_foreseen_by_its_change() -> None:
     errors = 0.02 * np.sin(2.0 * math.pi * 5.0 * 1e-3 * np.arange(400))[:, None]
     state = account.init(profile, errors[0])
     for last, error in pairwise(errors[:-1]):
-        state = account.book(state, last, np.zeros(1), error, Motion(error, np.zeros(1)))
+        state = account.book(state, last, np.zeros(1), error, ErrorMotion(error, np.zeros(1)))
     assert likely_step(state)[0] == pytest.approx((errors[-1] - errors[-2])[0], rel=0.01)

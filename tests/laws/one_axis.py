@@ -9,7 +9,7 @@ import numpy as np
 
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.haptic_exploration import HapticExploration
-from pliant.references.schedule import Mailbox
+from pliant.references.schedule import LatestReference
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 
 FOOT = "foot"
@@ -108,7 +108,7 @@ def reference(z: float, F_d: float, tuned: ImpedanceTuning, config: ExplorationC
 def run(world, events, seconds, config=None, period=1e-3, noise=0.0, seed=0, impedance=None, delay=0, dt=2e-5) -> Log:
     """Closed loop. events: [(time, z, F_d, tuning, config or None)], in order."""
     random = np.random.default_rng(seed)
-    mailbox = Mailbox(reference(*events[0][1:4]))
+    mailbox = LatestReference(reference(*events[0][1:4]))
     source = HapticExploration(mailbox, config or ExplorationConfig())
     zero = np.zeros(1)
     state = source.init(Estimate(0.0, zero, zero, zero, zero))

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pliant.references.planners import harmonic_attractor as attractor
-from pliant.references.planners.superposition import MotionLimits, Plan
+from pliant.references.planners.superposition import MotionLimits, Superposition
 
 LIMITS = MotionLimits(speed=0.3, acceleration=3.0)
 POINT = st.tuples(*[st.floats(-0.5, 0.5)] * 3)
@@ -20,7 +20,7 @@ PERIOD = 1e-3  # s
 
 def planned(start, sequence, step=0.025, tail=0.0):
     """Times, positions, velocities, accelerations of a plan that is retargeted on the way."""
-    plan, time, rows = Plan(tuple(start)), 0.0, []
+    plan, time, rows = Superposition(tuple(start)), 0.0, []
     for wait, target in sequence:
         plan = plan.folded(time).retargeted(time, tuple(target), LIMITS)
         rows += [(t, *plan.at(t)) for t in np.arange(time, time + wait, step)]
@@ -83,7 +83,7 @@ def test_attractor_leaves_the_hull_when_retargeted():
 @given(start=POINT, sequence=SEQUENCE)
 def test_rests_exactly_on_the_last_target(start, sequence):
     _, positions, velocities, _ = planned(start, sequence, tail=1.0)
-    plan = Plan(tuple(start))
+    plan = Superposition(tuple(start))
     time = 0.0
     for wait, target in sequence:
         plan = plan.folded(time).retargeted(time, target, LIMITS)
@@ -137,8 +137,10 @@ def test_summed_speed_and_acceleration_keep_their_limits(start, sequence):
 def test_without_stretching_the_sum_breaks_the_limit():
     """Baseline: two pieces of their own shortest time, one after half of the other."""
     duration = LIMITS.duration(0.4)
-    first = Plan((0.0, 0.0, 0.0)).retargeted(0.0, (0.4, 0.0, 0.0), LIMITS)
-    naive = Plan(first.base, (*first.pieces, first.pieces[0]._replace(start=0.5 * duration, target=(0.8, 0.0, 0.0))))
+    first = Superposition((0.0, 0.0, 0.0)).retargeted(0.0, (0.4, 0.0, 0.0), LIMITS)
+    naive = Superposition(
+        first.base, (*first.pieces, first.pieces[0]._replace(start=0.5 * duration, target=(0.8, 0.0, 0.0)))
+    )
     speeds = [math.hypot(*naive.at(t).velocity) for t in np.linspace(0, 1.5 * duration, 200)]
     assert max(speeds) > 1.2 * LIMITS.speed
 
@@ -161,7 +163,7 @@ def test_one_motion_is_a_straight_line_at_the_limit(start, target):
 @settings(max_examples=30)
 @given(start=POINT, sequence=SEQUENCE)
 def test_velocity_and_acceleration_are_derivatives(start, sequence):
-    plan, time = Plan(tuple(start)), 0.0
+    plan, time = Superposition(tuple(start)), 0.0
     for wait, target in sequence:
         plan, time = plan.folded(time).retargeted(time, target, LIMITS), time + wait
     edges = [edge for p in plan.pieces for edge in (p.start, p.start + p.duration)]

@@ -8,7 +8,7 @@ import pinocchio as pin
 from pliant import _mpc
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.config import Contact, MpcConfig
-from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.costs import Costs, PhaseCosts, Term
 from pliant.mpc.horizon import HorizonReference
 from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.make_problem import problem_from_robot
@@ -50,7 +50,7 @@ def config(
         "kind": kind,
         "contact": contact,
         "costs": Costs.model_validate(costs),
-        "phases": {"contact": Phase(contact=True)},
+        "phases": {"contact": PhaseCosts(contact=True)},
     }
     return MpcConfig.model_validate(values | changes)
 

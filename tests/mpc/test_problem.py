@@ -17,7 +17,7 @@ from pliant.errors import ConfigError, RobotError, ShapeError
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.config import Contact, MpcConfig
 from pliant.mpc.controller import MpcController
-from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.costs import Costs, PhaseCosts, Term
 from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, TorqueFeedbackMpc
 from pliant.mpc.make_problem import problem_from_model, problem_from_robot
 from pliant.mpc.registry import CONTROLLERS
@@ -224,7 +224,7 @@ def test_an_unknown_phase_lists_the_known_ones() -> None:
 
 def test_a_phase_may_have_its_own_terms() -> None:
     costs = Costs(rotation=Term(weight=1.0), force=Term(weight=2.0))
-    own = Phase(contact=True, rotation=Term(weight=7.0)).over(costs)
+    own = PhaseCosts(contact=True, rotation=Term(weight=7.0)).over(costs)
     assert own.rotation.weight == 7.0
     assert own.force.weight == 2.0
 

@@ -16,7 +16,7 @@ from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.contact_normal import angle_between, turned_normal, within_cone
 from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
 from pliant.references.exploration.sliding_span import SlidingSpan
-from pliant.references.schedule import Mailbox
+from pliant.references.schedule import LatestReference
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import exp3, log3
 
@@ -56,7 +56,7 @@ def play(source: HapticExploration, ticks: int, first: int = 0, state=None, **wr
 
 
 def test_offset_moves_against_the_missing_force_and_is_reported() -> None:
-    out, _ = play(HapticExploration(Mailbox(reference(task()))), 50, foot=(3, 0, 10, 0, 0, 0))
+    out, _ = play(HapticExploration(LatestReference(reference(task()))), 50, foot=(3, 0, 10, 0, 0, 0))
     offset = out.diagnostics["exploration/foot/offset"]
     np.testing.assert_allclose(out.tasks[0].position, np.array([0.3, 0.1, 0.0]) + offset)
     assert offset[2] < -1e-3
@@ -67,7 +67,7 @@ def test_offset_moves_against_the_missing_force_and_is_reported() -> None:
 
 
 def test_bound_that_shrinks_holds_in_the_same_tick() -> None:
-    box = Mailbox(reference(task()))
+    box = LatestReference(reference(task()))
     source = HapticExploration(box)
     out, state = play(source, 400, foot=(0, 0, 2, 0, 0, 0))
     assert out.diagnostics["exploration/foot/offset"][2] == -0.02
@@ -80,13 +80,15 @@ def test_bound_that_shrinks_holds_in_the_same_tick() -> None:
 
 
 def test_force_beyond_the_maximum_is_clamped_and_reported() -> None:
-    out, _ = play(HapticExploration(Mailbox(reference(task(wrench=(0, 0, -160, 0, 0, 0))))), 3, foot=np.zeros(6))
+    out, _ = play(
+        HapticExploration(LatestReference(reference(task(wrench=(0, 0, -160, 0, 0, 0))))), 3, foot=np.zeros(6)
+    )
     assert out.tasks[0].wrench[2] == -100.0
     assert out.diagnostics["exploration/foot/clamped"][2] == -60.0
 
 
 def test_signal_that_is_not_finite_holds_everything() -> None:
-    source = HapticExploration(Mailbox(reference(task())))
+    source = HapticExploration(LatestReference(reference(task())))
     before, state = play(source, 30, foot=(0, 0, 10, 0, 0, 0))
     held, state = play(source, 5, 30, state, foot=(0, np.inf, np.nan, 0, 0, 0))
     np.testing.assert_array_equal(held.tasks[0].position, before.tasks[0].position)
@@ -97,7 +99,7 @@ def test_signal_that_is_not_finite_holds_everything() -> None:
 def test_frames_are_explored_on_their_own() -> None:
     tasks = task("left"), task("right", wrench=(0, 0, -20, 0, 0, 0)), task("elbow", wrench=np.zeros(6))
     out, _ = play(
-        HapticExploration(Mailbox(reference(*tasks))), 40, left=(0, 0, 10, 0, 0, 0), right=(0, 0, -5, 0, 0, 0)
+        HapticExploration(LatestReference(reference(*tasks))), 40, left=(0, 0, 10, 0, 0, 0), right=(0, 0, -5, 0, 0, 0)
     )
     assert out.diagnostics["exploration/left/offset"][2] < 0.0 < out.diagnostics["exploration/right/offset"][2]
     assert out.tasks[2] is tasks[2]  # nothing to feel
@@ -106,7 +108,7 @@ def test_frames_are_explored_on_their_own() -> None:
 def test_six_axes_turn_the_target_about_the_moment() -> None:
     R = exp3([0.3, -0.2, 0.5])
     wrench = (0, 0, 0, 0, 0.5, 0)
-    source = HapticExploration(Mailbox(reference(task(wrench=wrench, tuning=tuned(6), rotation=R))))
+    source = HapticExploration(LatestReference(reference(task(wrench=wrench, tuning=tuned(6), rotation=R))))
     out, _ = play(source, 50, foot=(0, 0, 0, 0, 0.2, 0))
     offset = out.diagnostics["exploration/foot/offset"]
     assert offset.shape == (6,)
@@ -115,7 +117,7 @@ def test_six_axes_turn_the_target_about_the_moment() -> None:
 
 
 def test_no_desired_force_brings_the_offset_back_slowly() -> None:
-    box = Mailbox(reference(task()))
+    box = LatestReference(reference(task()))
     source = HapticExploration(box)
     out, state = play(source, 200, foot=(0, 0, 10, 0, 0, 0))
     start = out.diagnostics["exploration/foot/offset"][2]
@@ -127,7 +129,7 @@ def test_no_desired_force_brings_the_offset_back_slowly() -> None:
 
 
 def test_parameters_change_with_the_reference() -> None:
-    box = Mailbox(reference(task()))
+    box = LatestReference(reference(task()))
     source = HapticExploration(box)
     _, state = play(source, 20, foot=(0, 0, 10, 0, 0, 0))
     slow = ExplorationConfig(speed=1e-4)
@@ -139,7 +141,7 @@ def test_parameters_change_with_the_reference() -> None:
 
 
 def test_frame_that_was_away_starts_anew() -> None:
-    box = Mailbox(reference(task()))
+    box = LatestReference(reference(task()))
     source = HapticExploration(box)
     _, state = play(source, 200, foot=(0, 0, 10, 0, 0, 0))
     box.put(reference())
@@ -150,7 +152,7 @@ def test_frame_that_was_away_starts_anew() -> None:
 
 
 def test_pause_does_not_make_the_target_jump() -> None:
-    source = HapticExploration(Mailbox(reference(task())))
+    source = HapticExploration(LatestReference(reference(task())))
     before, state = play(source, 20, foot=(0, 0, 10, 0, 0, 0))
     after, _ = source.step(estimate(20 + 90, foot=(0, 0, 10, 0, 0, 0)), state)
     assert abs(after.tasks[0].position[2] - before.tasks[0].position[2]) <= 0.15 * 0.02 + 1e-12
@@ -163,7 +165,7 @@ def slide(direction: str, friction: float, tilt: float) -> np.ndarray:
     velocity = np.concatenate([0.1 * along, np.zeros(3)])
     force = np.concatenate([10.0 * (normal - friction * along), np.zeros(3)])
     source = HapticExploration(
-        Mailbox(reference(task(velocity=velocity))),
+        LatestReference(reference(task(velocity=velocity))),
         ExplorationConfig(direction=direction),  # type: ignore[arg-type]
     )
     out, _ = play(source, 250, foot=force)
@@ -192,7 +194,9 @@ def test_normal_is_left_alone_at_rest_and_kept_in_its_cone() -> None:
 def test_normal_mode_keeps_the_bound_of_every_axis() -> None:
     force = (8, 3, 2, 0, 0, 0)
     velocity = np.array([0.0, 0.05, 0.02, 0, 0, 0])
-    source = HapticExploration(Mailbox(reference(task(velocity=velocity))), ExplorationConfig(direction="normal"))
+    source = HapticExploration(
+        LatestReference(reference(task(velocity=velocity))), ExplorationConfig(direction="normal")
+    )
     state = source.init(estimate(0))
     last = np.zeros(3)
     for tick in range(600):
@@ -223,11 +227,11 @@ def test_span_is_that_of_the_window() -> None:
 )
 def test_bad_input_is_named(make, wrenches, words: str) -> None:
     with pytest.raises(PliantError, match=words):
-        play(HapticExploration(Mailbox(reference(make()))), 1, **wrenches)
+        play(HapticExploration(LatestReference(reference(make()))), 1, **wrenches)
 
 
 def test_time_that_runs_backwards_is_refused() -> None:
-    source = HapticExploration(Mailbox(reference(task())))
+    source = HapticExploration(LatestReference(reference(task())))
     _, state = play(source, 20, foot=np.zeros(6))
     with pytest.raises(SignalError, match="backwards"):
         source.step(estimate(3, foot=np.zeros(6)), state)
@@ -246,11 +250,11 @@ def test_config_refuses_impossible_values_and_documents_every_parameter() -> Non
 
 def test_tunings_of_the_exploration_are_passed_on() -> None:
     bare = dataclasses.replace(task(), tuning=None)
-    source = HapticExploration(Mailbox(reference(bare)), tunings={"foot": tuned()})
+    source = HapticExploration(LatestReference(reference(bare)), tunings={"foot": tuned()})
     out, _ = play(source, 2, foot=np.zeros(6))
     assert out.tasks[0].tuning is source.tunings["foot"]
     with pytest.raises(ConfigError):
-        play(HapticExploration(Mailbox(reference(bare))), 1, foot=np.zeros(6))
+        play(HapticExploration(LatestReference(reference(bare))), 1, foot=np.zeros(6))
 
 
 def test_documentation_names_every_parameter_and_channel() -> None:

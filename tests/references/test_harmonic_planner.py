@@ -13,7 +13,7 @@ from pliant.references.planners.harmonic_attractor import AttractorSettings
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
 from pliant.references.planners.workspace import Workspace, workspace_of
-from pliant.references.schedule import Mailbox, Schedule
+from pliant.references.schedule import LatestReference, Schedule
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import exp3, log3
@@ -41,7 +41,7 @@ def play(robot: Robot, source, seconds: float, period: float = H):
 
 
 def test_starts_where_the_robot_is_and_rests_on_the_target(lwr4: Robot) -> None:
-    rows = play(lwr4, HarmonicPlanner(Mailbox(goal(0.3, -0.4, 0.5)), lwr4.placement), 7.0)
+    rows = play(lwr4, HarmonicPlanner(LatestReference(goal(0.3, -0.4, 0.5)), lwr4.placement), 7.0)
     start = lwr4.placement(lwr4.home, "flange")[0]
     np.testing.assert_allclose(rows[0].position, start, atol=1e-12)
     assert tuple(rows[-1].position) == (0.3, -0.4, 0.5)
@@ -51,7 +51,9 @@ def test_starts_where_the_robot_is_and_rests_on_the_target(lwr4: Robot) -> None:
 
 def test_twist_and_its_rate_belong_to_the_pose(lwr4: Robot) -> None:
     turned = exp3([0.4, -0.9, 1.1]) @ lwr4.placement(lwr4.home, "flange")[1]
-    rows = play(lwr4, HarmonicPlanner(Mailbox(goal(0.3, -0.4, 0.5, rotation=turned)), lwr4.placement), 7.0, 2e-3)
+    rows = play(
+        lwr4, HarmonicPlanner(LatestReference(goal(0.3, -0.4, 0.5, rotation=turned)), lwr4.placement), 7.0, 2e-3
+    )
     for low, mid, high in zip(rows[100:600:31], rows[101:601:31], rows[102:602:31], strict=True):
         linear = (high.position - low.position) / 4e-3
         angular = log3(high.rotation @ low.rotation.T) / 4e-3
@@ -63,7 +65,7 @@ def test_twist_and_its_rate_belong_to_the_pose(lwr4: Robot) -> None:
 def test_position_and_orientation_arrive_together(lwr4: Robot) -> None:
     position, R = lwr4.placement(lwr4.home, "flange")
     target = goal(*(position + np.array([0.02, 0, 0])), rotation=exp3([1.5, 0, 0]) @ R)
-    rows = play(lwr4, HarmonicPlanner(Mailbox(target), lwr4.placement), 4.0)
+    rows = play(lwr4, HarmonicPlanner(LatestReference(target), lwr4.placement), 4.0)
     moving = [i for i, row in enumerate(rows) if np.linalg.norm(row.velocity[:3]) > 1e-6]
     turning = [i for i, row in enumerate(rows) if np.linalg.norm(row.velocity[3:]) > 1e-6]
     assert abs(moving[-1] - turning[-1]) <= 2
@@ -81,7 +83,7 @@ def test_schedule_of_targets_with_turns_beyond_pi(lwr4: Robot) -> None:
 
 def test_moving_target_keeps_the_limits_and_few_pieces(lwr4: Robot) -> None:
     """A slider that is dragged: a new target at every tick."""
-    box = Mailbox(goal(0.3, -0.4, 0.5))
+    box = LatestReference(goal(0.3, -0.4, 0.5))
     limits = PlannerLimits(MotionLimits(0.3, 3.0))
     source = HarmonicPlanner(box, lwr4.placement, limits)
     state = source.init(estimate(lwr4, 0.0))
@@ -94,7 +96,7 @@ def test_moving_target_keeps_the_limits_and_few_pieces(lwr4: Robot) -> None:
 
 def test_bad_input_is_named(lwr4: Robot) -> None:
     with pytest.raises(SignalError, match="not finite"):
-        play(lwr4, HarmonicPlanner(Mailbox(goal(0.3, np.nan, 0.5)), lwr4.placement), 0.01)
+        play(lwr4, HarmonicPlanner(LatestReference(goal(0.3, np.nan, 0.5)), lwr4.placement), 0.01)
     with pytest.raises(ConfigError, match="speed limit"):
         MotionLimits(0.0, 1.0)
     with pytest.raises(ConfigError, match="increasing times"):
@@ -104,16 +106,16 @@ def test_bad_input_is_named(lwr4: Robot) -> None:
 def test_attractor_planner_goes_to_a_single_target(lwr4: Robot) -> None:
     start = lwr4.placement(lwr4.home, "flange")[0]
     target = start + np.array([-0.1, 0.05, 0.1])
-    rows = play(lwr4, AttractorPlanner(Mailbox(goal(*target)), lwr4.placement), 3.0)
+    rows = play(lwr4, AttractorPlanner(LatestReference(goal(*target)), lwr4.placement), 3.0)
     np.testing.assert_allclose(rows[0].position, start, atol=1e-6)
     np.testing.assert_allclose(rows[-1].position, target, atol=2e-3)
-    printed = AttractorPlanner(Mailbox(goal(*target)), lwr4.placement, AttractorSettings(printed=True))
+    printed = AttractorPlanner(LatestReference(goal(*target)), lwr4.placement, AttractorSettings(printed=True))
     assert np.linalg.norm(play(lwr4, printed, 3.0)[-1].position - target) > 0.02  # baseline
 
 
 def test_target_outside_the_workspace_is_brought_back_and_reported(lwr4: Robot) -> None:
     workspace = workspace_of(lwr4, "flange")
-    planner = HarmonicPlanner(Mailbox(goal(3.0, 0.0, 0.31)), lwr4.placement, FAST, {"flange": workspace})
+    planner = HarmonicPlanner(LatestReference(goal(3.0, 0.0, 0.31)), lwr4.placement, FAST, {"flange": workspace})
     state = planner.init(estimate(lwr4, 0.0))
     for tick in range(8000):
         reference, state = planner.step(estimate(lwr4, tick * H), state)

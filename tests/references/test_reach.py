@@ -12,9 +12,9 @@ import pytest
 
 from pliant.errors import ConfigError
 from pliant.references.postures.posture import PostureOptions, UnreachableError
-from pliant.references.reach import Bounds, Course, ReachCheck, check_reach, course_of
+from pliant.references.reach import Course, ReachBounds, ReachCheck, check_reach, course_of
 from pliant.references.toolpaths.patterns import circle, line
-from pliant.references.toolpaths.pressing import ForceProfile
+from pliant.references.toolpaths.pressing import PressingForce
 from pliant.references.toolpaths.toolpath import PathMotion, on_chart
 from pliant.references.trajectories.spline import Spline
 from pliant.robot import Robot, Tool
@@ -32,7 +32,7 @@ def course_on(
     surface: SurfaceGeometry, near: object, uv: np.ndarray, speed: float = 0.1, force: float = 25.0
 ) -> Course:
     path = on_chart(surface, np.asarray(near, dtype=np.float64), X, uv, PathMotion(speed, lift=RADIUS), X)
-    return course_of(path, ForceProfile.constant(force), stand_off=0.03, approach_speed=0.1, leave=0.3)
+    return course_of(path, PressingForce.constant(force), stand_off=0.03, approach_speed=0.1, leave=0.3)
 
 
 def on_plane(x: float, z: float = 0.15, speed: float = 0.1, force: float = 25.0) -> Course:
@@ -121,7 +121,7 @@ def test_what_is_said_to_be_reachable_is() -> None:
     assert 5 <= sum(answers) <= 15
 
 
-def quick(course: Course, spins: bool = False, bounds: Bounds | None = None) -> ReachCheck:
+def quick(course: Course, spins: bool = False, bounds: ReachBounds | None = None) -> ReachCheck:
     """From the home posture alone, and without a search for what would help, which takes long."""
     with patch("pliant.references.reach.check.remedy", return_value=""):
         options = PostureOptions(restarts=0, spins=spins)
@@ -165,13 +165,13 @@ def test_each_bound_is_found_broken_and_said() -> None:
         margin = left[name]
         worst = float(margin.values[margin.worst])
         tighter, looser = (1.01, 0.99) if margin.least else (0.99, 1.01)
-        check = quick(course, bounds=Bounds(**{field: tighter * worst}))
+        check = quick(course, bounds=ReachBounds(**{field: tighter * worst}))
         assert not check.reachable
         assert name in check.surfaces[0].failure
         assert [row[1] for row in check.rows() if row[5] == "✗"] == [name]
-        assert quick(course, bounds=Bounds(**{field: looser * worst})).reachable
+        assert quick(course, bounds=ReachBounds(**{field: looser * worst})).reachable
     with pytest.raises(ConfigError, match="load of a reach check must not be negative"):
-        Bounds(load=-1.0)
+        ReachBounds(load=-1.0)
 
 
 def test_out_of_reach_is_said_with_the_point_and_what_would_help() -> None:
@@ -189,7 +189,7 @@ def test_too_much_force_and_too_much_speed_have_their_own_remedies() -> None:
     heavy = check_reach(ROBOT, "tool", on_plane(0.55, force=700.0), posture=PLAIN, nominal=ROBOT.home)
     assert "torque of joint" in heavy.surfaces[0].failure
     assert heavy.help.startswith("press with")
-    fast = check_reach(ROBOT, "tool", on_plane(0.55), bounds=Bounds(speed=0.02), posture=PLAIN)
+    fast = check_reach(ROBOT, "tool", on_plane(0.55), bounds=ReachBounds(speed=0.02), posture=PLAIN)
     assert "joint speed of joint" in fast.surfaces[0].failure
     assert "times slower" in fast.help
 

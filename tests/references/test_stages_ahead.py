@@ -9,7 +9,7 @@ from pliant.errors import ConfigError
 from pliant.interfaces import Lookahead
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
-from pliant.references.schedule import Mailbox
+from pliant.references.schedule import LatestReference
 from pliant.references.stages import Ending, Stage, StageChange, Stages
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference, TaskReference
@@ -99,6 +99,6 @@ def test_a_stage_that_only_contact_ends_goes_on_and_a_failure_is_not_foreseen() 
 
 
 def test_a_preview_needs_a_source_that_knows_what_is_coming() -> None:
-    box = Mailbox(Reference(0.0, (TaskReference("flange", HERE),)))
-    with pytest.raises(ConfigError, match="says what is coming, and Mailbox does not"):
+    box = LatestReference(Reference(0.0, (TaskReference("flange", HERE),)))
+    with pytest.raises(ConfigError, match="says what is coming, and LatestReference does not"):
         HarmonicPlanner(box, ROBOT.placement, lookahead=Lookahead(3, 0.01))

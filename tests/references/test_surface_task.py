@@ -16,7 +16,7 @@ from pliant.references.postures.inverse_kinematics import Target
 from pliant.references.postures.posture import UnreachableError
 from pliant.references.surface_task import SurfaceTask, SurfaceTaskSettings, surface_task
 from pliant.references.toolpaths.patterns import PATTERNS, line
-from pliant.references.toolpaths.pressing import ForceProfile, Pressing
+from pliant.references.toolpaths.pressing import Pressing, PressingForce
 from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart
 from pliant.references.trajectories.excerpt import Excerpt, TurningExcerpt
 from pliant.references.trajectories.trajectory import Hold
@@ -29,7 +29,7 @@ from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, Surfac
 RADIUS = 0.015
 ROBOT = Robot.load("iiwa14").with_tool(Tool(mass=0.3, length=0.15, radius=RADIUS, frame="tool"))
 X = np.array([1.0, 0.0, 0.0])
-PROFILE = ForceProfile((0.0, 0.1, 1.0), (5.0, 25.0, 25.0))
+PROFILE = PressingForce((0.0, 0.1, 1.0), (5.0, 25.0, 25.0))
 DT = 5e-3  # s
 AHEAD = Lookahead(nodes=4, step=0.01, lead=0.005)
 
@@ -193,7 +193,7 @@ def test_the_posture_leads_to_the_reference(case: Played) -> None:
 def short() -> SurfaceTask:
     plane = PlaneSurface(np.array([0.55, 0.0, 0.15]), np.eye(3))
     path = on_chart(plane, plane.origin, X, line((0.02, 0.0)), PathMotion(lift=RADIUS), X)
-    return surface_task(ROBOT, "tool", path, ForceProfile.constant(10.0), SurfaceTaskSettings(stand_off=0.05))
+    return surface_task(ROBOT, "tool", path, PressingForce.constant(10.0), SurfaceTaskSettings(stand_off=0.05))
 
 
 def test_a_surface_that_is_not_there_ends_the_run_in_one_sentence(short: SurfaceTask) -> None:
@@ -250,9 +250,9 @@ def laid_circle() -> Toolpath:
 
 def test_force_profiles() -> None:
     with pytest.raises(ConfigError, match=r"knots of a force profile must increase, got \[0.0, 0.0\]"):
-        ForceProfile((0.0, 0.0), (1.0, 2.0))
+        PressingForce((0.0, 0.0), (1.0, 2.0))
     with pytest.raises(ConfigError, match=r"pushes: not negative"):
-        ForceProfile((0.0,), (-1.0,))
+        PressingForce((0.0,), (-1.0,))
     plane = PlaneSurface(np.zeros(3), exp3([0.3, 0.0, 0.0]))
     path = on_chart(plane, plane.origin, X, line((0.1, 0.0)), PathMotion(speed=0.05), X)
     by_share, by_time = PROFILE.along(path), replace(PROFILE, unit="s").along(path)
@@ -266,7 +266,7 @@ def test_force_profiles() -> None:
 
 def test_the_rates_of_a_wrench_along_a_turning_normal_are_its_derivatives() -> None:
     path = laid_circle()
-    pressing = Pressing(ForceProfile((0.0, 1.0), (5.0, 25.0)).along(path), path.task)
+    pressing = Pressing(PressingForce((0.0, 1.0), (5.0, 25.0)).along(path), path.task)
     h, t = 1e-4, 0.4 * path.duration + 3e-3
     before, now, after = (pressing.at(t + dt) for dt in (-h, 0.0, h))
     np.testing.assert_allclose(now.rate, (after.value - before.value) / (2 * h), atol=1e-3)

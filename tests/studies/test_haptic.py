@@ -11,15 +11,15 @@ from pliant.experiments.base import Result
 from pliant.experiments.config import merged
 from pliant.experiments.runner import run_case
 from pliant.studies.haptic import STUDY
-from pliant.studies.haptic.config import Check, HapticConfig
-from pliant.studies.haptic.steps_config import OnlineChanges, Planner, Step
+from pliant.studies.haptic.config import Check, HapticCaseConfig
+from pliant.studies.haptic.steps_config import HapticPlannerConfig, OnlineChanges, Step
 
 pytestmark = pytest.mark.study
 
 SHORT_FLOOR = STUDY.case("floor").model_copy(
     update={
         "duration": 3.2,
-        "planner": Planner(acceleration=0.8),  # m/s², as in the full study's longer slide
+        "planner": HapticPlannerConfig(acceleration=0.8),  # m/s², as in the full study's longer slide
         "steps": (
             Step(time=0.0, target=(0.06, 0.0, 0.017), force=(0.0, 0.0, 40.0)),
             Step(time=1.2, target=(0.10, 0.0, 0.017)),
@@ -39,7 +39,7 @@ SHORT_FLOOR = STUDY.case("floor").model_copy(
 )
 
 
-def values(config: HapticConfig) -> dict[str, float]:
+def values(config: HapticCaseConfig) -> dict[str, float]:
     """Metrics of a run that must reach its end; those with a target must keep it."""
     result: Result = run_case(STUDY, config)
     assert result.failure is None
@@ -48,7 +48,7 @@ def values(config: HapticConfig) -> dict[str, float]:
     return {metric.name: metric.value for metric in result.metrics}
 
 
-def printed(config: HapticConfig) -> dict[str, float]:
+def printed(config: HapticCaseConfig) -> dict[str, float]:
     return values(config.model_copy(update={"controller": "haptic-paper"}))
 
 

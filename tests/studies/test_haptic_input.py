@@ -13,7 +13,7 @@ from pliant.errors import ConfigError
 from pliant.experiments.config import merged
 from pliant.spatial import Array
 from pliant.studies.haptic import STUDY
-from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.config import HapticCaseConfig
 from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import reachable_force
 from pliant.studies.haptic.script import wishes
@@ -24,7 +24,7 @@ from tests.laws.impedance_strategies import profile_of
 FLOOR = STUDY.case("floor")
 
 
-def changed(**changes: Any) -> HapticConfig:
+def changed(**changes: Any) -> HapticCaseConfig:
     return merged(FLOOR, changes)
 
 
@@ -82,7 +82,7 @@ def test_unreachable_force_is_warned_of_with_the_range_it_needs() -> None:
     assert STUDY.build(wider).warnings == ()
 
 
-def run(config: HapticConfig) -> dict[str, Array]:
+def run(config: HapticCaseConfig) -> dict[str, Array]:
     wired, recorder = STUDY.build(config), Recorder(None)
     outcome = loop.run(
         wired.plant, wired.estimator, wired.source, wired.controller, range(round(config.duration * 1e3)), [recorder]

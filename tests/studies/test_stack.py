@@ -17,7 +17,7 @@ from pliant.references.postures.posture import UnreachableError
 from pliant.studies.stack import STUDY
 from pliant.studies.stack.build import build
 from pliant.studies.stack.cases import CASES
-from pliant.studies.stack.config import StackConfig
+from pliant.studies.stack.config import StackCaseConfig
 from pliant.studies.stack.measure import tracking_rmse
 from pliant.telemetry import Log, Metric, Recorder
 
@@ -26,7 +26,7 @@ SHORT = {"duration": 6.0, "path": {"ramp": 1.0}}  # one round of the figure-8 co
 
 
 @cache
-def run(case: str, changes: tuple[tuple[str, Any], ...] = ()) -> tuple[StackConfig, Log, loop.Outcome]:
+def run(case: str, changes: tuple[tuple[str, Any], ...] = ()) -> tuple[StackCaseConfig, Log, loop.Outcome]:
     config = merged(STUDY.case(case), SHORT)
     for key, value in changes:
         config = merged(config, {key: value})
@@ -76,7 +76,7 @@ def test_a_wall_disturbs_only_the_axis_that_it_stops() -> None:
     assert found["torque step"].met
 
 
-def _without_wall(changes: dict[str, Any]) -> tuple[StackConfig, Log, loop.Outcome]:
+def _without_wall(changes: dict[str, Any]) -> tuple[StackCaseConfig, Log, loop.Outcome]:
     return run("figure8-wall", tuple(changes.items()))
 
 

@@ -16,7 +16,7 @@ from pliant.robots.description import set_limits
 from pliant.studies.polishing import STUDY as POLISHING
 from pliant.studies.stack import STUDY as STACK
 from pliant.studies.stack.build import build
-from pliant.studies.stack.config import Path as ToolPath
+from pliant.studies.stack.config import StackPath as ToolPath
 from pliant.studies.stack.placement import motion, placed
 
 FRAMES = ("flange", "elbow")

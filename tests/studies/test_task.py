@@ -19,7 +19,7 @@ from pliant.configuration import merged
 from pliant.experiments.runner import run_case
 from pliant.spatial import exp3
 from pliant.studies.task.build import planned
-from pliant.studies.task.measure import MEASURES, Signals, measured, signals_of
+from pliant.studies.task.measure import MEASURES, TaskSignals, measured, signals_of
 from pliant.studies.task.study import study_of
 from pliant.studies.task.world import true_surface
 from pliant.surfaces import SphereSurface
@@ -42,7 +42,7 @@ def test_a_force_on_a_curved_surface_that_is_not_where_it_is_believed(name: str,
     assert found["force_peak"] <= 40.0
 
 
-def signals(**changes: object) -> Signals:
+def signals(**changes: object) -> TaskSignals:
     values = {
         "time": np.arange(10) * 0.1,
         "force": np.array([0.0, 0.0, 4.0, 9.0, 10.0, 12.0, 10.0, 0.0, 10.0, 3.0]),
@@ -51,7 +51,7 @@ def signals(**changes: object) -> Signals:
         "following": np.arange(10) >= 4,
         "limit": np.linspace(0.0, 0.5, 20).reshape(10, 2),
     }
-    return Signals(**(values | changes))  # type: ignore[arg-type]
+    return TaskSignals(**(values | changes))  # type: ignore[arg-type]
 
 
 def test_metrics_on_ten_samples() -> None:

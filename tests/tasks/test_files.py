@@ -17,7 +17,7 @@ from pliant.studies.task.config import case_of
 from pliant.studies.task.study import study_of
 from pliant.studies.task.world import true_surface
 from pliant.tasks import load_task
-from pliant.tasks.draws import Choice, Normal, Uniform, bounds, drawn
+from pliant.tasks.draws import Normal, OneOf, Uniform, bounds, drawn
 from pliant.tasks.files import catalogue, read_task
 from pliant.tasks.parts import Force
 
@@ -95,7 +95,7 @@ def test_every_task_that_ships_can_be_run(name: str) -> None:
 @settings(max_examples=30, deadline=None)
 def test_draws_stay_within_their_bounds(value: float, width: float, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    for how in (value, Uniform(uniform=(value, value + width)), Choice(choice=(value, value + width))):
+    for how in (value, Uniform(uniform=(value, value + width)), OneOf(choice=(value, value + width))):
         low, high = bounds(how)
         assert low <= drawn(how, rng) <= high
     assert bounds(Normal(normal=(value, width))) == (value - 3.0 * width, value + 3.0 * width)

@@ -19,7 +19,7 @@ from pliant.signals import ImpedanceTuning
 from pliant.spatial import rpy
 from pliant.studies.haptic import STUDY as HAPTIC
 from pliant.studies.haptic import measure as haptic
-from pliant.studies.haptic.config import Check, HapticConfig
+from pliant.studies.haptic.config import Check, HapticCaseConfig
 from pliant.studies.polishing import STUDY as POLISHING
 from pliant.studies.polishing.measure import measure as polishing
 from pliant.studies.stack import STUDY as STACK
@@ -217,7 +217,7 @@ CHECKS: Mapping[str, tuple[Mapping[str, Any], float]] = {
 def _haptic(kind: str) -> float:
     own, _ = CHECKS[kind]
     check = Check(kind=kind, name="x", begin=0.2, **own)  # pyright: ignore[reportArgumentType]
-    config: HapticConfig = HAPTIC.case("box-top").model_copy(update={"period": 0.1, "checks": (check,)})
+    config: HapticCaseConfig = HAPTIC.case("box-top").model_copy(update={"period": 0.1, "checks": (check,)})
     place = columns(0.1, 0.2, 0.3)
     side = np.where((K == 4) | (K < 2), 0.0, -4.0)  # lost once, in sample 4
     turned = np.array([0.3, 0.0, 0.1, math.cos(0.7), 0.6 * math.sin(0.7), 0.8 * math.sin(0.7), 0.0])  # by 1.4 rad

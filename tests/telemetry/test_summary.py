@@ -12,7 +12,7 @@ from rich.console import Console
 
 import pliant
 from pliant.errors import OutputError
-from pliant.telemetry import Case, Metric, Summary, output_folder, over_runs
+from pliant.telemetry import CaseSummary, Metric, Summary, output_folder, over_runs
 from pliant.telemetry.markdown import summary_markdown
 from pliant.telemetry.proportion import bound_text
 from pliant.telemetry.table import number, summary_table
@@ -21,7 +21,7 @@ SUMMARY = Summary(
     "stack",
     3,
     (
-        Case(
+        CaseSummary(
             "figure8-plain",
             "capped",
             (
@@ -34,7 +34,7 @@ SUMMARY = Summary(
             failures=("diverged at t = 3.1000 s",),
             seeds=tuple(range(10)),
         ),
-        Case("figure8-plain", "spring", (Metric("peak torque", 176.0, "N·m"),), note="baseline"),
+        CaseSummary("figure8-plain", "spring", (Metric("peak torque", 176.0, "N·m"),), note="baseline"),
     ),
 )
 
@@ -117,7 +117,7 @@ def test_table_and_markdown_show_targets_and_failures() -> None:
 def test_a_comparison_is_readable_at_eighty_columns() -> None:
     """Names of metrics stay whole, and columns that say nothing are left out."""
     metrics = tuple(Metric(f"landing_peak_force_{k}", 12.3456, "N", std=0.0123, runs=10) for k in range(3))
-    cases = tuple(Case(name, "torque-feedback-mpc", metrics, runs=10) for name in ("wipe", "wipe-tilted"))
+    cases = tuple(CaseSummary(name, "torque-feedback-mpc", metrics, runs=10) for name in ("wipe", "wipe-tilted"))
     console = Console(width=80, record=True, file=io.StringIO())
     console.print(summary_table(Summary("task", "0", cases)))
     text = console.export_text()
@@ -125,7 +125,7 @@ def test_a_comparison_is_readable_at_eighty_columns() -> None:
     assert "wipe-tilted · torque-feedback-mpc" in text
     assert "paper" not in text
     assert "target" not in text
-    whole = Summary("task", "0", (Case("wipe", "stack", (Metric("peak", 1.0, "N", paper=2.0, target=3.0),)),))
+    whole = Summary("task", "0", (CaseSummary("wipe", "stack", (Metric("peak", 1.0, "N", paper=2.0, target=3.0),)),))
     console.print(summary_table(whole))
     text = console.export_text()
     assert all(word in text for word in ("paper", "target", "≤ 3.00"))
@@ -178,7 +178,9 @@ def test_a_file_that_is_no_summary(tmp_path: Path, content: str) -> None:
 def test_every_row_says_of_how_many_runs_it_is() -> None:
     runs = [(Metric("a", value, "N"), Metric("peak", value, "N")) for value in (1.0, 2.0, 6.0)]
     metrics = over_runs(runs, worst=("peak",))
-    summary = Summary("toy", 0, (Case("c", "x", metrics, runs=5, failures=("fell", "fell")), Case("d", "x", runs=140)))
+    summary = Summary(
+        "toy", 0, (CaseSummary("c", "x", metrics, runs=5, failures=("fell", "fell")), CaseSummary("d", "x", runs=140))
+    )
     text = summary_markdown(summary)
     assert "| c | x | a | 3.00 ± 2.6 | – | – | N | mean of 3 |  |" in text
     assert "| c | x | peak | 6.00 | – | – | N | worst of 3 |  |" in text
@@ -189,7 +191,7 @@ def test_every_row_says_of_how_many_runs_it_is() -> None:
 
 def test_the_statistics_survive_the_file(tmp_path: Path) -> None:
     metrics = over_runs([(Metric("a", v, "N"), Metric("peak", v, "N")) for v in (1.0, 3.0)], worst=("peak",))
-    path = Summary("toy", 0, (Case("c", "x", metrics, runs=2),)).write(tmp_path)
+    path = Summary("toy", 0, (CaseSummary("c", "x", metrics, runs=2),)).write(tmp_path)
     stored = json.loads(path.read_text(encoding="utf-8"))["cases"][0]["metrics"]
     assert (stored["a"]["runs"], stored["a"]["statistic"]) == (2, "mean")
     assert (stored["peak"]["runs"], stored["peak"]["statistic"]) == (2, "worst")

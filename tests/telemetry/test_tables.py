@@ -16,12 +16,12 @@ from pliant.experiments.base import Result, Study
 from pliant.experiments.summarise import summarised
 from pliant.studies.polishing import STUDY
 from pliant.telemetry import markdown, proportion, table
-from pliant.telemetry.summary import Case, Metric, Summary
+from pliant.telemetry.summary import CaseSummary, Metric, Summary
 
 AVERAGED = Metric("RMSE y", -3.5, "mm", 2.0, -3.0, std=1.25, runs=2)
 WORST = Metric("margin", -0.25, "J", None, -0.5, at_least=True, runs=3, worst=True)
-CASE = Case("line", "stack", (AVERAGED, WORST), 4, ("seed 1: it | fell",), note="as printed", variant="no wall")
-SUMMARY = Summary("stack", 7, (CASE, Case("line", "spring", (Metric("RMSE y", 12.25, "mm"),))), version="0")
+CASE = CaseSummary("line", "stack", (AVERAGED, WORST), 4, ("seed 1: it | fell",), note="as printed", variant="no wall")
+SUMMARY = Summary("stack", 7, (CASE, CaseSummary("line", "spring", (Metric("RMSE y", 12.25, "mm"),))), version="0")
 LINES = """\
 | case | controller | metric | value | paper | target | unit | runs | |
 |---|---|---|---:|---:|---:|---|---|---|

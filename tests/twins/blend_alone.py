@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pliant.controllers.attractor import Attractor, AttractorState
-from pliant.controllers.passivity_account import Motion
+from pliant.controllers.passivity_account import ErrorMotion
 from pliant.controllers.profiles import ForceProfile
 from pliant.spatial import Array
 
@@ -12,6 +12,6 @@ class BlendAlone(Attractor):
     """Phases, capped law and blend, sampled, and nothing that books what they let out."""
 
     def step(
-        self, profile: ForceProfile, error: Array, state: AttractorState, motion: Motion | None = None
+        self, profile: ForceProfile, error: Array, state: AttractorState, motion: ErrorMotion | None = None
     ) -> tuple[Array, AttractorState]:
         return self.wish(profile, error, state)

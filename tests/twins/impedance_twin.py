@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pliant.controllers.attractor import Attractor, AttractorState, Law, PhaseSettings, converging_force
-from pliant.controllers.passivity_account import Motion
+from pliant.controllers.passivity_account import ErrorMotion
 from pliant.controllers.profiles import ForceProfile
 from pliant.spatial import Array, log3
 from tests.rotations import left_jacobian_inverse
@@ -67,12 +67,12 @@ class TwinTask:
         error = target[0] - pose[0]
         return error if self.axes == 3 else np.concatenate([error, log3(target[1] @ pose[1].T)])
 
-    def _motion(self, robot: Array, work: float) -> Motion:
+    def _motion(self, robot: Array, work: float) -> ErrorMotion:
         """The work of each axis: h times its motion, and its share of what the torque did besides."""
         own = self.force * (robot - self.error)
         weight = np.abs(own)
         share = weight / weight.sum() if weight.any() else np.full(self.axes, 1.0 / self.axes)
-        return Motion(robot, own + (work - own.sum()) * share)
+        return ErrorMotion(robot, own + (work - own.sum()) * share)
 
     def _moment_scale(self, error: Array, profile: ForceProfile) -> Array:
         """(axes,) 1 for translations, one factor for the rotations."""

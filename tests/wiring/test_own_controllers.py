@@ -17,7 +17,7 @@ from pliant.cli.listing import list_command
 from pliant.configuration import merged
 from pliant.errors import ConfigError
 from pliant.experiments.registry import get_study
-from pliant.experiments.sweep import Task, run_task
+from pliant.experiments.sweep import Job, run_task
 from pliant.interfaces import Lookahead, Needs
 from pliant.wiring.registry import find_controller
 
@@ -206,7 +206,7 @@ def test_a_task_that_is_a_value_runs_and_travels(tmp_path: Path) -> None:
     assert again.failure == result.failure
     assert (again.log["truth/q"] == result.log["truth/q"]).all()
     config = get_study("press").case("press").model_copy(update={"duration": 0.01, "controller": "haptic"})
-    done = run_task(Task("a-file-that-went.toml", config))  # as a worker that does not see the file
+    done = run_task(Job("a-file-that-went.toml", config))  # as a worker that does not see the file
     assert done.status == "failed"
     assert "no contact was found" in str(done.result.failure)
 

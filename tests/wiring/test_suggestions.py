@@ -11,7 +11,7 @@ from pliant.estimation import JointStateFilter
 from pliant.estimation.environment import EnvironmentEstimator
 from pliant.interfaces import Controller, Needs
 from pliant.robot import Robot
-from pliant.wiring.estimators import Sensing, estimator_for
+from pliant.wiring.estimators import SensorFilters, estimator_for
 from pliant.wiring.plugins import entry_of
 from pliant.wiring.registry import find_controller
 
@@ -30,8 +30,8 @@ def test_force_is_regulated_ten_times_slower_than_the_loop_answers(leg3: Robot) 
 
 def test_the_environment_is_looked_for_at_the_frame_that_presses_or_the_first(lwr4: Robot) -> None:
     needs = Needs(environment=True)
-    first = estimator_for(needs, lwr4, Believed(("flange", "elbow"), 1e-3), Sensing())
-    pressed = estimator_for(needs, lwr4, Believed(("flange", "elbow"), 1e-3, presses="elbow"), Sensing())
+    first = estimator_for(needs, lwr4, Believed(("flange", "elbow"), 1e-3), SensorFilters())
+    pressed = estimator_for(needs, lwr4, Believed(("flange", "elbow"), 1e-3, presses="elbow"), SensorFilters())
     assert isinstance(first, EnvironmentEstimator)
     assert isinstance(pressed, EnvironmentEstimator)
     assert (first.frame, pressed.frame) == ("flange", "elbow")
@@ -43,7 +43,7 @@ def test_the_environment_is_looked_for_at_the_frame_that_presses_or_the_first(lw
 def test_joints_are_filtered_where_that_is_asked_for(
     memory: float | None, calm: bool, filtered: bool, lwr4: Robot
 ) -> None:
-    made = estimator_for(Needs(calm=calm), lwr4, Believed(("flange",), 1e-3), Sensing(joint_memory=memory))
+    made = estimator_for(Needs(calm=calm), lwr4, Believed(("flange",), 1e-3), SensorFilters(joint_memory=memory))
     assert isinstance(made, JointStateFilter) is filtered
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from pliant.experiments.base import Study
 from pliant.experiments.case import PaperTable
 from pliant.telemetry.proportion import share_text
-from pliant.telemetry.summary import Case, Metric, Summary
+from pliant.telemetry.summary import CaseSummary, Metric, Summary
 from pliant.telemetry.table import value_text
 
 
@@ -23,7 +23,7 @@ def paper_tables(study: Study[Any], summary: Summary) -> str:
     return "\n".join(parts)
 
 
-def _markdown(table: PaperTable, rows: Sequence[Case]) -> str:
+def _markdown(table: PaperTable, rows: Sequence[CaseSummary]) -> str:
     """A line per metric, a column per controller; the paper's number in brackets. Runs that failed enter no line but
     the last one."""
     lines = ["| | " + " | ".join(row.controller for row in rows) + " |", "|---|" + "---:|" * len(rows)]
@@ -38,11 +38,11 @@ def _markdown(table: PaperTable, rows: Sequence[Case]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _ended(row: Case) -> int:
+def _ended(row: CaseSummary) -> int:
     return row.runs - len(row.failures)
 
 
-def _found(row: Case, name: str) -> Metric | None:
+def _found(row: CaseSummary, name: str) -> Metric | None:
     return next((metric for metric in row.metrics if metric.name == name), None)
 
 

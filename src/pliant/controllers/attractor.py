@@ -13,7 +13,7 @@ from enum import StrEnum
 import numpy as np
 import numpy.typing as npt
 
-from pliant.controllers.passivity_account import ACCOUNT, Account, AccountSettings, AccountState, Motion
+from pliant.controllers.passivity_account import ACCOUNT, Account, AccountSettings, AccountState, ErrorMotion
 from pliant.controllers.profiles import ForceProfile
 from pliant.errors import ConfigError
 from pliant.spatial import Array
@@ -132,7 +132,7 @@ class Attractor:
         )
 
     def step(
-        self, profile: ForceProfile, error: Array, state: AttractorState, motion: Motion | None = None
+        self, profile: ForceProfile, error: Array, state: AttractorState, motion: ErrorMotion | None = None
     ) -> tuple[Array, AttractorState]:
         """The force (k,) in N or N·m for the error of this tick (k,), and the next state.
 
@@ -142,7 +142,7 @@ class Attractor:
             state: of the last tick.
             motion: what moved the error; None: the robot alone, against the force of the last tick.
         """
-        motion = motion or Motion(error, state.force * (error - state.errors[0]))
+        motion = motion or ErrorMotion(error, state.force * (error - state.errors[0]))
         booked = self._booked(profile, error, state, motion) if self.law is Law.CAPPED else None
         wanted, state = self.wish(profile, error, state)
         if booked is None:
@@ -178,7 +178,7 @@ class Attractor:
         kick = np.where(rotates, self.account.kick_angular, self.account.kick)
         return Account(self.period, speed, kick, self.account)
 
-    def _booked(self, profile: ForceProfile, error: Array, state: AttractorState, motion: Motion) -> AccountState:
+    def _booked(self, profile: ForceProfile, error: Array, state: AttractorState, motion: ErrorMotion) -> AccountState:
         account, last = self._account(error), state.errors[0]
         booked = state.account or account.init(profile, last)
         booked = account.book(booked, last, state.force, error, motion)

@@ -43,7 +43,7 @@ MOMENT_SCALE = "moment_scale"
 
 
 @dataclass(frozen=True)
-class Channel:
+class LedgerChannel:
     """Where a channel stands in the output of a step."""
 
     start: int
@@ -52,7 +52,7 @@ class Channel:
     unit: str
 
 
-def channel_table(joints: int, tasks: Sequence[tuple[str, int]], account: bool = True) -> dict[str, Channel]:
+def channel_table(joints: int, tasks: Sequence[tuple[str, int]], account: bool = True) -> dict[str, LedgerChannel]:
     """Name → place of every channel of a stack.
 
     Args:
@@ -60,28 +60,28 @@ def channel_table(joints: int, tasks: Sequence[tuple[str, int]], account: bool =
         tasks: (label, axes) of each task.
         account: whether the axes have a passivity account; without one nothing is spendable, and no channel says so.
     """
-    table: dict[str, Channel] = {}
+    table: dict[str, LedgerChannel] = {}
     place = 2 * joints
     for name in TOTALS:
-        table[f"energy/{name}"] = Channel(place, 0, "J")
+        table[f"energy/{name}"] = LedgerChannel(place, 0, "J")
         place += 1
     if not account:
         del table["energy/spendable"]
     for label, axes in tasks:
-        table[f"{label}/wrench"] = Channel(place, 6, "N, N·m")
+        table[f"{label}/wrench"] = LedgerChannel(place, 6, "N, N·m")
         place += 6
         for name, unit in AXIS_ROWS:
-            table[f"{label}/{name}"] = Channel(place, axes, unit)
+            table[f"{label}/{name}"] = LedgerChannel(place, axes, unit)
             place += axes
         for name in TASK_SUMS:
-            table[f"{label}/{name}"] = Channel(place, 0, "J")
+            table[f"{label}/{name}"] = LedgerChannel(place, 0, "J")
             place += 1
-        table[f"{label}/{MOMENT_SCALE}"] = Channel(place, 0, "1")
+        table[f"{label}/{MOMENT_SCALE}"] = LedgerChannel(place, 0, "1")
         place += 1
     return table
 
 
-def require_length(table: Mapping[str, Channel], numbers: int) -> None:
+def require_length(table: Mapping[str, LedgerChannel], numbers: int) -> None:
     """Raises ShapeError unless the channels end where the output of the compiled core ends."""
     end = max(channel.start + max(channel.size, 1) for channel in table.values())
     if end != numbers:
@@ -96,7 +96,7 @@ class Diagnostics(Mapping[str, "float | Array"]):
 
     __slots__ = ("_table", "_values")
 
-    def __init__(self, table: Mapping[str, Channel], values: Array) -> None:
+    def __init__(self, table: Mapping[str, LedgerChannel], values: Array) -> None:
         self._table = table
         self._values = values
 

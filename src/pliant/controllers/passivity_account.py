@@ -111,7 +111,7 @@ class AccountState:
 
 
 @dataclass(frozen=True)
-class Motion:
+class ErrorMotion:
     """What moved the error of `k` axes in the last period. All arrays (k,)."""
 
     robot: Array
@@ -138,7 +138,7 @@ class Account:
         rows = np.zeros((STEPS, *error.shape))
         return AccountState(profile, zero, zero, profile.energy(error), rows, rows, *(zero,) * 7)
 
-    def book(self, state: AccountState, last: Array, force: Array, error: Array, motion: Motion) -> AccountState:
+    def book(self, state: AccountState, last: Array, force: Array, error: Array, motion: ErrorMotion) -> AccountState:
         """Books a period in which the error went from `last` to `error` (k,) and h = `force` (k,) was asked for.
 
         A target that moves the error by r supplies h·r, or what the profile then stores more, whichever is larger.

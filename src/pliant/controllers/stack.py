@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from pliant import _impedance
 from pliant.controllers.attractor import Law, PhaseSettings
-from pliant.controllers.energy_ledger import Channel, Diagnostics, channel_table, require_length
+from pliant.controllers.energy_ledger import Diagnostics, LedgerChannel, channel_table, require_length
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.profiles import linear_range
 from pliant.controllers.stack_input import check_stack, joints_that_move, target_of
@@ -130,7 +130,7 @@ class Stack(Controller[StackState]):
         return needs_of_law(self.law)
 
     @property
-    def channels(self) -> Mapping[str, Channel]:
+    def channels(self) -> Mapping[str, LedgerChannel]:
         """Name → place, size and unit of every channel in `Command.diagnostics`."""
         return self._table
 

@@ -1,10 +1,10 @@
-"""The wiring's `Sensing`, from the keys of a study or a task."""
+"""The wiring's `SensorFilters`, from the keys of a study or a task."""
 
 from __future__ import annotations
 
 from pliant.estimation import SurfaceFitConfig
 from pliant.tasks.estimation import Estimation
-from pliant.wiring.estimators import Load, Sensing
+from pliant.wiring.estimators import Load, SensorFilters
 
 
 def sensing_of(
@@ -15,9 +15,9 @@ def sensing_of(
     joint_memory: float | None = None,
     surface: SurfaceFitConfig | None = None,
     load: Load = ({}, {}),
-) -> Sensing:
-    """For the wiring. Args: keys; those of `Sensing`; load: carried and contact_frames; joint_memory: of the task."""
-    return Sensing(
+) -> SensorFilters:
+    """For the wiring. Args: keys; those of `SensorFilters`; load: carried, contact_frames; joint_memory: of a task."""
+    return SensorFilters(
         felt=felt,
         velocity_gain=velocity_gain,
         wrench_cutoff=keys.wrench_cutoff,

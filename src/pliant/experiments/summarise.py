@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pliant.experiments.base import Result, Study
-from pliant.telemetry.summary import Case, Metric, Summary, over_runs
+from pliant.telemetry.summary import CaseSummary, Metric, Summary, over_runs
 
 Groups = Mapping[tuple[str, str, str], Sequence[Result]]
 """(case, controller, label of the row) → runs"""
@@ -22,11 +22,11 @@ def summarised(study: Study[Any], results: Sequence[Result]) -> Summary:
     return Summary(study.name, min(seeds, default=None), tuple(_row(study, groups, names) for names in groups))
 
 
-def _row(study: Study[Any], groups: Groups, names: tuple[str, str, str]) -> Case:
+def _row(study: Study[Any], groups: Groups, names: tuple[str, str, str]) -> CaseSummary:
     case, controller, label = names
     results = groups[names]
     ended = [run.metrics for run in results if run.failure is None]
-    return Case(
+    return CaseSummary(
         case=case,
         controller=controller,
         variant=label,

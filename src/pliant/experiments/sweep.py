@@ -23,7 +23,7 @@ MOST_SEEDS = 100_000
 
 
 @dataclass(frozen=True)
-class Task:
+class Job:
     """One run, as it is sent to another process."""
 
     study: str
@@ -93,12 +93,12 @@ def sweep(
         logs: keep the log of every run; otherwise only of those that the study shows.
     """
     folder = None if folder is None else folder.resolve()  # workers may have another working directory
-    tasks = [Task(study_name, config, folder, logs) for config in configs]
+    tasks = [Job(study_name, config, folder, logs) for config in configs]
     for index, outcome in pool(run_task, tasks):
         yield Run(Result(configs[index], (), outcome.reason), "lost", 0.0) if isinstance(outcome, Lost) else outcome
 
 
-def run_task(task: Task) -> Run:
+def run_task(task: Job) -> Run:
     """One run, in whatever process this is. An exception is a failed run with a reason, not the end of the sweep."""
     started = time.perf_counter()
     try:
@@ -109,7 +109,7 @@ def run_task(task: Task) -> Run:
     return Run(result, status, time.perf_counter() - started)
 
 
-def _run(task: Task) -> Result:
+def _run(task: Job) -> Result:
     study = study_of_run(task.study, task.config)
     shown = study.shows(task.config)
     visible = task.folder is not None and task.folder.is_dir()  # not on a machine that does not share the folder

@@ -27,7 +27,7 @@ _WIDTH = 140  # columns of a table as text
 
 
 @dataclass(frozen=True)
-class Result:
+class RunResult:
     """What came out of one run."""
 
     study: Study[Any] = field(repr=False)
@@ -120,7 +120,7 @@ class Comparison:
         return self.table()
 
 
-def save(result: Result, folder: Path) -> Path:
+def save(result: RunResult, folder: Path) -> Path:
     """Writes summary.json into the folder of the log. Returns the file. Raises OutputError."""
     return result.summary.write(folder)
 

@@ -16,7 +16,7 @@ from pliant.experiments.open_pool import open_pool
 from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
 from pliant.experiments.sweep import compared, sweep
-from pliant.face.result import Comparison, Result, save
+from pliant.face.result import Comparison, RunResult, save
 from pliant.tasks.task import Task
 from pliant.telemetry.log import Log
 from pliant.telemetry.output import output_folder
@@ -32,7 +32,7 @@ def run(
     metrics: Sequence[str] | None = None,
     out: str | Path | None = None,
     **changes: Any,
-) -> Result:
+) -> RunResult:
     """Runs one case in simulation and measures it.
 
     Args:
@@ -61,7 +61,7 @@ def run(
         return _kept(study, config, output_folder(Path(out)))
     with tempfile.TemporaryDirectory() as folder:
         found = run_case(study, config, Path(folder), figures=False)
-        return Result(study, found, _log(found.log))
+        return RunResult(study, found, _log(found.log))
 
 
 def compare(
@@ -122,10 +122,10 @@ def _named(what: str | Path | Task) -> str | Task:
     return what if isinstance(what, Task) else str(what)
 
 
-def _kept(study: Study[Any], config: CaseConfig, folder: Path) -> Result:
+def _kept(study: Study[Any], config: CaseConfig, folder: Path) -> RunResult:
     write_config(study, config, folder)
     found = run_case(study, config, folder)
-    result = Result(study, found, _log(found.log))
+    result = RunResult(study, found, _log(found.log))
     save(result, folder)
     return result
 

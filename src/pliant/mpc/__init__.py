@@ -6,7 +6,7 @@ solves the problem with the compiled core at every period.
 
 from pliant.mpc.config import Bounds, Compensation, Contact, MpcConfig
 from pliant.mpc.controller import MpcController, MpcState
-from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.costs import Costs, PhaseCosts, Term
 from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, OffsetFreeMpc, TorqueFeedbackMpc
 from pliant.mpc.make_problem import problem_from_model, problem_from_robot
 from pliant.mpc.problem import MpcProblem
@@ -25,7 +25,7 @@ __all__ = [
     "MpcProblem",
     "MpcState",
     "OffsetFreeMpc",
-    "Phase",
+    "PhaseCosts",
     "Term",
     "TorqueFeedbackMpc",
     "problem_from_model",

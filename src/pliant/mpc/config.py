@@ -11,7 +11,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from pliant.entries import ControllerConfig
-from pliant.mpc.costs import Costs, Phase
+from pliant.mpc.costs import Costs, PhaseCosts
 from pliant.mpc.models import MODELS, Kind, PredictiveModel
 
 Axes = Literal["local", "world", "surface"]
@@ -160,8 +160,8 @@ class MpcConfig(ControllerConfig):
     bounds: Bounds = Bounds()
     compensation: Compensation = Compensation()
     costs: Costs = Costs()
-    phases: dict[str, Phase] = Field(
-        default={"free": Phase(), "contact": Phase(contact=True)},
+    phases: dict[str, PhaseCosts] = Field(
+        default={"free": PhaseCosts(), "contact": PhaseCosts(contact=True)},
         min_length=1,
         description="costs of each phase by name",
     )

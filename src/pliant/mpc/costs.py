@@ -102,7 +102,7 @@ class Costs(ControllerConfig):
     )
 
 
-class Phase(ControllerConfig):
+class PhaseCosts(ControllerConfig):
     """What is different in one phase of a task. Terms that are None are the common ones."""
 
     contact: bool = Field(default=False, description="whether the model is in contact")

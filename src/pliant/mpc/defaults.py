@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from pliant.mpc.config import Compensation, Contact, MpcConfig
-from pliant.mpc.costs import Costs, Phase, Term
+from pliant.mpc.costs import Costs, PhaseCosts, Term
 from pliant.mpc.models import Kind
 
 _PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
 
 
-def _phases(track: Term, contact: Term, circle: Term) -> dict[str, Phase]:
+def _phases(track: Term, contact: Term, circle: Term) -> dict[str, PhaseCosts]:
     return {
-        "reach": Phase(translation=track),
-        "track": Phase(translation=track),
-        "contact": Phase(contact=True, translation=contact),
-        "ramp": Phase(contact=True, translation=contact),
-        "circle": Phase(contact=True, translation=circle),
-        "approach": Phase(translation=track),
-        "press": Phase(contact=True, translation=contact),
-        "follow": Phase(contact=True, translation=circle),
-        "leave": Phase(translation=track),
+        "reach": PhaseCosts(translation=track),
+        "track": PhaseCosts(translation=track),
+        "contact": PhaseCosts(contact=True, translation=contact),
+        "ramp": PhaseCosts(contact=True, translation=contact),
+        "circle": PhaseCosts(contact=True, translation=circle),
+        "approach": PhaseCosts(translation=track),
+        "press": PhaseCosts(contact=True, translation=contact),
+        "follow": PhaseCosts(contact=True, translation=circle),
+        "leave": PhaseCosts(translation=track),
     }
 
 
@@ -46,7 +46,7 @@ class ForceFeedbackMpc(MpcConfig):
         force=Term(weight=0.01, terminal=0.05),
         force_rate=Term(weight=6e-7),
     )
-    phases: dict[str, Phase] = _phases(
+    phases: dict[str, PhaseCosts] = _phases(
         _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
     )
 
@@ -76,7 +76,7 @@ class OffsetFreeMpc(ForceFeedbackMpc):
         force=Term(weight=0.03, terminal=0.15),
         force_rate=Term(weight=6e-7),
     )
-    phases: dict[str, Phase] = _phases(
+    phases: dict[str, PhaseCosts] = _phases(
         _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(1000.0, _PLANE)
     )
 
@@ -94,7 +94,7 @@ class ClassicalMpc(MpcConfig):
         velocity=_VELOCITY,
         force=Term(weight=1000.0),
     )
-    phases: dict[str, Phase] = _phases(
+    phases: dict[str, PhaseCosts] = _phases(
         _translation(5.0, _ALL, per_node=2.0), _translation(2.0, _ALL), _translation(60.0, _PLANE)
     )
 
@@ -113,6 +113,6 @@ class TorqueFeedbackMpc(MpcConfig):
         velocity=_VELOCITY,
         force=Term(weight=1000.0),
     )
-    phases: dict[str, Phase] = _phases(
+    phases: dict[str, PhaseCosts] = _phases(
         _translation(12.0, _ALL, per_node=5.0), _translation(200.0, _PLANE), _translation(200.0, _PLANE)
     )

@@ -7,15 +7,15 @@ from collections.abc import Mapping
 from pliant.entries import Believed
 from pliant.interfaces import Lookahead, Needs
 from pliant.mpc.config import Compensation, Contact, MpcConfig
-from pliant.mpc.costs import Phase, Term
+from pliant.mpc.costs import PhaseCosts, Term
 from pliant.robot import Robot
 
 _POSTURE_SHARE = 0.05
 """of the default posture cost, where a task says nothing of phases or posture"""
 _TRACK = 1000.0  # 1/m²
 _FELT = {
-    "free": Phase(translation=Term(weight=_TRACK, terminal_times_dt=False)),
-    "contact": Phase(
+    "free": PhaseCosts(translation=Term(weight=_TRACK, terminal_times_dt=False)),
+    "contact": PhaseCosts(
         contact=True, translation=Term(weight=_TRACK, activation=(1.0, 1.0, 0.0), terminal_times_dt=False)
     ),
 }
@@ -68,9 +68,9 @@ def _on_surface(contact: Contact, believed: Believed) -> Contact:
     return contact.model_copy(update={"axes": "surface", "normal": normal})
 
 
-def _phases(config: MpcConfig, wanted: Mapping[str, bool]) -> dict[str, Phase]:
-    free = next((phase for phase in config.phases.values() if not phase.contact), Phase())
-    touching = next((phase for phase in reversed(config.phases.values()) if phase.contact), Phase(contact=True))
+def _phases(config: MpcConfig, wanted: Mapping[str, bool]) -> dict[str, PhaseCosts]:
+    free = next((phase for phase in config.phases.values() if not phase.contact), PhaseCosts())
+    touching = next((phase for phase in reversed(config.phases.values()) if phase.contact), PhaseCosts(contact=True))
     unknown = {name: touching if touches else free for name, touches in wanted.items() if name not in config.phases}
     return config.phases | unknown
 

@@ -9,7 +9,7 @@ from pliant.references.planners.attractor_planner import AttractorPlanner
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
 from pliant.references.planners.workspace import Workspace, workspace_of
-from pliant.references.schedule import Mailbox, Schedule
+from pliant.references.schedule import LatestReference, Schedule
 from pliant.references.source import FrameMotion, TrajectorySource
 from pliant.references.trajectories.sampled import read_motion
 from pliant.references.trajectories.shapes import Harmonics, circle, lemniscate, sine_line
@@ -26,7 +26,7 @@ __all__ = [
     "HarmonicPlanner",
     "Harmonics",
     "Hold",
-    "Mailbox",
+    "LatestReference",
     "MotionLimits",
     "PlannerLimits",
     "Schedule",

@@ -52,7 +52,7 @@ class Schedule(ReferenceSource[ScheduleState]):
         return [at_time(said, state.start + time) for time, said in later if state.start + time <= until]
 
 
-class Mailbox(ReferenceSource[None]):
+class LatestReference(ReferenceSource[None]):
     """Gives the reference that was put in last: the way in for sliders, pendants and other programs.
 
     `put` may be called from another thread; the loop takes the latest whole reference at its next tick.

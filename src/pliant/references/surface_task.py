@@ -20,7 +20,7 @@ from pliant.errors import ConfigError
 from pliant.interfaces import Lookahead
 from pliant.references.phases import PhasedSource, TaskPhase
 from pliant.references.postures.path_posture import PathPosture, path_posture
-from pliant.references.toolpaths.pressing import ForceProfile, Pressing
+from pliant.references.toolpaths.pressing import Pressing, PressingForce
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.references.trajectories.rotation import Fixed
 from pliant.references.trajectories.time_scaling import EaseIn
@@ -112,7 +112,7 @@ def surface_task(
     robot: Robot,
     frame: str,
     path: Toolpath,
-    force: ForceProfile,
+    force: PressingForce,
     settings: SurfaceTaskSettings | None = None,
     nominal: npt.ArrayLike | None = None,
 ) -> SurfaceTask:

@@ -22,13 +22,13 @@ class Normal(Config):
     normal: tuple[float, Annotated[float, Field(ge=0.0)]] = Field(description="mean and standard deviation")
 
 
-class Choice(Config):
+class OneOf(Config):
     """One of several values, each as likely."""
 
     choice: tuple[float, ...] = Field(min_length=1, description="the values")
 
 
-Drawn = float | Uniform | Normal | Choice
+Drawn = float | Uniform | Normal | OneOf
 """a number, or how it is drawn"""
 
 
@@ -38,7 +38,7 @@ def drawn(value: Drawn, rng: np.random.Generator) -> float:
         return float(rng.uniform(*value.uniform))
     if isinstance(value, Normal):
         return float(rng.normal(*value.normal))
-    if isinstance(value, Choice):
+    if isinstance(value, OneOf):
         return float(rng.choice(value.choice))
     return float(value)
 
@@ -49,6 +49,6 @@ def bounds(value: Drawn) -> tuple[float, float]:
         return value.uniform
     if isinstance(value, Normal):
         return value.normal[0] - 3.0 * value.normal[1], value.normal[0] + 3.0 * value.normal[1]
-    if isinstance(value, Choice):
+    if isinstance(value, OneOf):
         return min(value.choice), max(value.choice)
     return value, value

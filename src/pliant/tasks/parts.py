@@ -29,7 +29,7 @@ class Pose(Config):
         return rpy(*(math.radians(angle) for angle in self.rpy))
 
 
-class Tool(Config):
+class ToolConfig(Config):
     """A rigid tool on the flange whose end is a ball."""
 
     mass: float = quantity(0.4, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
@@ -49,7 +49,7 @@ class Sensor(Config):
     )
 
 
-class Surface(Config):
+class SurfaceConfig(Config):
     """The part, as the controller believes it. In its own axes: z is a plane's normal and a cylinder's axis."""
 
     shape: Literal["plane", "cylinder", "sphere", "mesh"] = Field(
@@ -74,7 +74,7 @@ class Surface(Config):
     friction: float = quantity(0.25, "1", "Coulomb coefficient", ge=0.0, le=5.0)
 
     @model_validator(mode="after")
-    def _consistent(self) -> Surface:
+    def _consistent(self) -> SurfaceConfig:
         if (self.shape == "mesh") != (self.file is not None):
             raise ValueError("surface.file and surface.shape = 'mesh' go together")
         return self
@@ -92,7 +92,7 @@ class Surface(Config):
         return kind(place, pose.rotation, self.radius, self.hollow)
 
 
-class Path(Config):
+class PathConfig(Config):
     """What the tool draws on the surface."""
 
     pattern: Literal["raster", "spiral", "circle", "line", "square", "lemniscate", "hold", "file"] = Field(
@@ -122,7 +122,7 @@ class Path(Config):
     )
 
     @model_validator(mode="after")
-    def _consistent(self) -> Path:
+    def _consistent(self) -> PathConfig:
         if (self.pattern == "file") != (self.file is not None):
             raise ValueError("path.file and path.pattern = 'file' go together")
         return self
@@ -177,21 +177,21 @@ class Phases(Config):
     leave: float = quantity(0.5, "s", "in which the tool is lifted by stand_off at the end", gt=0.0, le=60.0)
 
 
-class Timing(Config):
+class TimingConfig(Config):
     """How late readings and commands are, as the controller believes; whether it is so says `truth.imperfections`."""
 
     sensing_delay: float = quantity(1e-3, "s", "age of a reading", ge=0.0, le=0.1)
     computation_delay: float = quantity(5e-3, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
 
 
-class Workspace(Config):
+class WorkspaceConfig(Config):
     """A box in the world, along its axes."""
 
     lower: Vector = quantity((-100.0, -100.0, -100.0), "m", "least x, y and z")
     upper: Vector = quantity((100.0, 100.0, 100.0), "m", "largest x, y and z")
 
     @model_validator(mode="after")
-    def _holds_something(self) -> Workspace:
+    def _holds_something(self) -> WorkspaceConfig:
         if not all(low < high for low, high in zip(self.lower, self.upper, strict=True)):
             raise ValueError(f"lower must be below upper, got {list(self.lower)} and {list(self.upper)}")
         return self
@@ -203,10 +203,10 @@ class Limits(Config):
     force: float | None = quantity(None, "N", "of the contact; none: no limit", gt=0.0)
     speed: float | None = quantity(None, "m/s", "of the frame; none: no limit", gt=0.0)
     torque: float | None = quantity(None, "1", "share of each joint's limit; none: no limit", gt=0.0, le=1.0)
-    workspace: Workspace | None = Field(default=None, description="where the frame may be; none: anywhere")
+    workspace: WorkspaceConfig | None = Field(default=None, description="where the frame may be; none: anywhere")
 
 
-class Truth(Config):
+class TruthConfig(Config):
     """How the world differs from what the controller believes. A simulation reads it, nothing else."""
 
     shift: Drawn = quantity(0.0, "m", "of the surface along its normal, outwards")

@@ -164,7 +164,7 @@ class Thing(Config):
         return self
 
 
-class Impedance(Config):
+class ImpedanceConfig(Config):
     """How the moved frame gives way, where the controller is an impedance; the references carry it."""
 
     stiffness: PerAxis = quantity(6000.0, "N/m", "K_0: force per error near the target")
@@ -172,7 +172,7 @@ class Impedance(Config):
     range: PerAxis = quantity(0.025, "m", "x_b: error at which F_max is reached, and bound of the exploration")
 
 
-class Planner(Config):
+class PlannerConfig(Config):
     """How targets that jump become motion."""
 
     speed: float = quantity(0.2, "m/s", "fastest motion of the target", ge=1e-4, le=100.0)

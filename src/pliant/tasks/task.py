@@ -13,19 +13,19 @@ from pliant.tasks.parts import (
     Disturbance,
     Force,
     Limits,
-    Path,
+    PathConfig,
     Phases,
     Sensor,
     Simulation,
-    Surface,
-    Timing,
-    Tool,
-    Truth,
+    SurfaceConfig,
+    TimingConfig,
+    ToolConfig,
+    TruthConfig,
 )
-from pliant.tasks.phase import Event, Impedance, Phase, Planner, Thing
+from pliant.tasks.phase import Event, ImpedanceConfig, Phase, PlannerConfig, Thing
 
 FORMAT = 1
-_OF_A_PATH = {"surface": Surface(), "path": Path(), "force": Force(), "phases": Phases()}
+_OF_A_PATH = {"surface": SurfaceConfig(), "path": PathConfig(), "force": Force(), "phases": Phases()}
 _OF_A_LIST = ("event", "scene", "moves", "start", "impedance")
 _OF_THE_SURFACE = ("shift", "tilt", "axis", "stiffness", "damping", "friction")
 
@@ -41,11 +41,11 @@ class TaskParts(Config):
         json_schema_extra={"unit": "deg"},
     )
     rotor_inertia: RotorInertia = None
-    tool: Tool = Tool()
+    tool: ToolConfig = ToolConfig()
     sensor: Sensor = Sensor()
     estimation: Estimation = Estimation()
-    surface: Surface = Surface()
-    path: Path = Path()
+    surface: SurfaceConfig = SurfaceConfig()
+    path: PathConfig = PathConfig()
     force: Force = Force()
     phases: Phases = Phases()
     phase: tuple[Phase, ...] = Field(
@@ -55,15 +55,17 @@ class TaskParts(Config):
     event: tuple[Event, ...] = Field(default=(), description="online changes, with [[phase]]")
     moves: str | None = Field(default=None, description="frame that targets and wrenches are for; none: the tool's")
     start: tuple[float, ...] | None = quantity(None, "deg", "joints at the start, with targets; none: home")
-    impedance: Impedance | None = Field(default=None, description="of the moved frame; none: the controller's own")
-    planner: Planner = Planner()
+    impedance: ImpedanceConfig | None = Field(
+        default=None, description="of the moved frame; none: the controller's own"
+    )
+    planner: PlannerConfig = PlannerConfig()
     compensates: Literal["none", "gravity", "gravity+coriolis"] = Field(
         default="none", description="what the robot compensates by itself"
     )
     velocity_share: float = quantity(1.0, "1", "of a new sample in the joint velocity; 1: no filter", gt=0.0, le=1.0)
-    timing: Timing = Timing()
+    timing: TimingConfig = TimingConfig()
     limits: Limits = Limits()
-    truth: Truth = Truth()
+    truth: TruthConfig = TruthConfig()
     disturbance: tuple[Disturbance, ...] = Field(default=(), description="pushes from outside")
     accept: dict[str, float] = Field(
         default={}, description="metric → bound that it must keep: force_error, force_peak, contact_lost, path_error, …"
@@ -87,7 +89,9 @@ class TaskParts(Config):
                 raise ValueError(f"{said[0]} belongs to a task of [[phase]]; this one has a path on a surface")
             return self
         said = [name for name, default in _OF_A_PATH.items() if getattr(self, name) != default]
-        said += [f"truth.{name}" for name in _OF_THE_SURFACE if getattr(self.truth, name) != getattr(Truth(), name)]
+        said += [
+            f"truth.{name}" for name in _OF_THE_SURFACE if getattr(self.truth, name) != getattr(TruthConfig(), name)
+        ]
         if said:
             raise ValueError(f"{said[0]} belongs to a task with a path on a surface; this one is a list of [[phase]]")
         names = self.phase_names()

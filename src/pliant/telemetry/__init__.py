@@ -5,10 +5,10 @@ from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import Log, LogChannel
 from pliant.telemetry.output import output_folder
 from pliant.telemetry.recorder import Recorder
-from pliant.telemetry.summary import Case, Metric, Summary, over_runs
+from pliant.telemetry.summary import CaseSummary, Metric, Summary, over_runs
 
 __all__ = [
-    "Case",
+    "CaseSummary",
     "Channel",
     "Log",
     "LogChannel",

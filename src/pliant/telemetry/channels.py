@@ -30,7 +30,7 @@ class Channel:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class ChannelGroup:
     """Channels that are picked out of a tick in one call."""
 
     pick: Callable[[Tick], Sequence[Any]]
@@ -41,8 +41,8 @@ class Group:
 class Groups:
     """All channels of ticks of one structure."""
 
-    signals: tuple[Group, ...]
+    signals: tuple[ChannelGroup, ...]
     """arrays of the signals: float64 by their types"""
-    arrays: tuple[Group, ...]
+    arrays: tuple[ChannelGroup, ...]
     """array diagnostics: of any numeric type"""
-    scalars: tuple[Group, ...]
+    scalars: tuple[ChannelGroup, ...]

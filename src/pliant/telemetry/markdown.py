@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pliant.telemetry.summary import Case, Summary
+from pliant.telemetry.summary import CaseSummary, Summary
 from pliant.telemetry.table import COUNTING, MET, MISSED, failed_text, number, runs_text, target_text, value_text
 
 
@@ -25,7 +25,7 @@ def summary_markdown(summary: Summary) -> str:
     return "\n".join([*lines, *(["", *remarks] if remarks else [])]) + "\n"
 
 
-def _rows(case: Case) -> list[str]:
+def _rows(case: CaseSummary) -> list[str]:
     rows: list[str] = []
     for metric in case.metrics:
         mark = "" if metric.met is None else MET if metric.met else MISSED

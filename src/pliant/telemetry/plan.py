@@ -10,23 +10,23 @@ import numpy as np
 
 from pliant.signals import Tick
 from pliant.spatial import Array
-from pliant.telemetry.channels import Channel, Group
+from pliant.telemetry.channels import Channel, ChannelGroup
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.mcap.topics import Topic, is_rotation, logged, quaternions, topics
 from pliant.telemetry.schema import groups
 
 
 @dataclass(frozen=True)
-class Plan:
+class RowLayout:
     """How a tick lies in a row: plain arrays, then the other arrays, then scalars.
 
     Plain are the signals' arrays that are float64 in C order: their bytes can be taken as they are, in a sixth of the
     time of `np.concatenate`. Diagnostics go the careful way, whatever their first values look like.
     """
 
-    plain: tuple[Group, ...]
-    arrays: tuple[Group, ...]
-    scalars: tuple[Group, ...]
+    plain: tuple[ChannelGroup, ...]
+    arrays: tuple[ChannelGroup, ...]
+    scalars: tuple[ChannelGroup, ...]
     channels: tuple[Channel, ...]
     """in the order of a row"""
     ends: tuple[int, int, int]
@@ -65,14 +65,14 @@ class Plan:
             row[arrays_end:] = _picked(self.scalars, tick)
 
 
-def _picked(chosen: tuple[Group, ...], tick: Tick) -> list[Any]:
+def _picked(chosen: tuple[ChannelGroup, ...], tick: Tick) -> list[Any]:
     values: list[Any] = []
     for group in chosen:
         values += group.pick(tick)
     return values
 
 
-def _is_plain(group: Group, tick: Tick) -> bool:
+def _is_plain(group: ChannelGroup, tick: Tick) -> bool:
     samples = [np.asarray(value) for value in group.pick(tick)]
     return all(sample.dtype == np.float64 and sample.flags.c_contiguous for sample in samples)
 
@@ -80,7 +80,7 @@ def _is_plain(group: Group, tick: Tick) -> bool:
 class Block:
     """Preallocated rows for ticks of one plan and one phase."""
 
-    def __init__(self, plan: Plan, phase: str, size: int) -> None:
+    def __init__(self, plan: RowLayout, phase: str, size: int) -> None:
         self.plan, self.phase = plan, phase
         self.times = np.empty(size)
         self.rows = np.empty((size, plan.ends[-1]))

@@ -21,7 +21,7 @@ from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import CLOCK, Log
 from pliant.telemetry.mcap.topics import PREFIX, units_of
 from pliant.telemetry.mcap.writer import McapFile
-from pliant.telemetry.plan import Block, Plan
+from pliant.telemetry.plan import Block, RowLayout
 from pliant.telemetry.schema import signature
 from pliant.telemetry.target import open_target, whole_seconds_below
 from pliant.telemetry.timing import Timing
@@ -65,7 +65,7 @@ class Recorder:
         self.path = Path(target) if isinstance(target, (str, Path)) else None
         self._stream, self._owned = open_target(target)
         self._channels, self._decimation = tuple(channels), decimation
-        self._plans: dict[tuple[Any, ...], Plan] = {}
+        self._plans: dict[tuple[Any, ...], RowLayout] = {}
         self._signature: tuple[Any, ...] | None = None
         self._block: Block | None = None
         self._seen = 0
@@ -189,7 +189,7 @@ class Recorder:
             raise ShapeError(f"a tick cannot be recorded: {error}") from error
         return block
 
-    def _new_block(self, plan: Plan, phase: str) -> Block:
+    def _new_block(self, plan: RowLayout, phase: str) -> Block:
         self._send()
         self._block = Block(plan, phase, _BLOCK)
         return self._block
@@ -199,8 +199,8 @@ class Recorder:
             self._queue.put(self._block)
         self._block = None
 
-    def _plan(self, tick: Tick) -> Plan:
-        plan = Plan.of(tick, self.info, self._channels)
+    def _plan(self, tick: Tick) -> RowLayout:
+        plan = RowLayout.of(tick, self.info, self._channels)
         self._units.update(units_of(plan.topics))
         return plan
 

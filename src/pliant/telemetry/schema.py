@@ -17,7 +17,7 @@ import numpy as np
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.signals import TaskReference, Tick
-from pliant.telemetry.channels import Channel, Group, Groups
+from pliant.telemetry.channels import Channel, ChannelGroup, Groups
 from pliant.telemetry.info import RunInfo
 
 SIGNALS = ("measurement", "estimate", "reference", "command", "truth")
@@ -87,13 +87,13 @@ def groups(tick: Tick, info: RunInfo, units: Sequence[Channel] = ()) -> Groups:
     """
     joints = joint_labels(info, tick.measurement.q.shape[0])
     signals = [*_fixed(tick, joints), *_wrenches(tick), *_tasks(tick), *_truth(tick, joints)]
-    arrays: list[Group] = []
-    scalars: list[Group] = []
+    arrays: list[ChannelGroup] = []
+    scalars: list[ChannelGroup] = []
     for name in ("command", "reference"):
         more_arrays, more_scalars = _diagnostics(tick, name, (*units, *DIAGNOSTICS))
         arrays += more_arrays
         scalars += more_scalars
-    scalars.append(Group(lambda tick: (tick.guard,), (Channel("guard/fault", "1"),)))
+    scalars.append(ChannelGroup(lambda tick: (tick.guard,), (Channel("guard/fault", "1"),)))
     if contacts := tuple(tick.estimate.contacts):
         named = tuple(Channel(f"estimate/{frame}/contact", "1") for frame in contacts)
         scalars.append(_mapping("estimate.contacts", contacts, named))
@@ -112,7 +112,7 @@ def axis_labels(size: int) -> tuple[str, ...]:
     return spatial[:size] if size in (3, 6) else tuple(str(i) for i in range(size))
 
 
-def _fixed(tick: Tick, joints: tuple[str, ...]) -> list[Group]:
+def _fixed(tick: Tick, joints: tuple[str, ...]) -> list[ChannelGroup]:
     fields = [
         ("measurement", "q", _JOINT),
         ("measurement", "v", _JOINT_RATE),
@@ -130,11 +130,11 @@ def _fixed(tick: Tick, joints: tuple[str, ...]) -> list[Group]:
     if tick.reference.posture is not None:
         fields.append(("reference", "posture", _JOINT))
     channels = tuple(Channel(f"{signal}/{field}", unit, (len(joints),), joints) for signal, field, unit in fields)
-    return [Group(_attributes([f"{signal}.{field}" for signal, field, _ in fields]), channels)]
+    return [ChannelGroup(_attributes([f"{signal}.{field}" for signal, field, _ in fields]), channels)]
 
 
-def _wrenches(tick: Tick) -> list[Group]:
-    found: list[Group] = []
+def _wrenches(tick: Tick) -> list[ChannelGroup]:
+    found: list[ChannelGroup] = []
     for signal in ("measurement", "estimate", "truth"):
         part = getattr(tick, signal)
         if part is not None and part.wrenches:
@@ -144,8 +144,8 @@ def _wrenches(tick: Tick) -> list[Group]:
     return found
 
 
-def _tasks(tick: Tick) -> list[Group]:
-    found: list[Group] = []
+def _tasks(tick: Tick) -> list[ChannelGroup]:
+    found: list[ChannelGroup] = []
     for index, task in enumerate(tick.reference.tasks):
         found.append(_task(index, task))
         if task.rotation is not None:
@@ -153,13 +153,13 @@ def _tasks(tick: Tick) -> list[Group]:
     return found
 
 
-def _task_rotation(index: int, frame: str) -> Group:
+def _task_rotation(index: int, frame: str) -> ChannelGroup:
     """A group of its own: matrices from pinocchio have the memory layout of Fortran."""
     channel = Channel(f"reference/{frame}/rotation", "1", (3, 3))
-    return Group(lambda tick: (tick.reference.tasks[index].rotation,), (channel,))
+    return ChannelGroup(lambda tick: (tick.reference.tasks[index].rotation,), (channel,))
 
 
-def _task(index: int, task: TaskReference) -> Group:
+def _task(index: int, task: TaskReference) -> ChannelGroup:
     fields = (("position", "m", 3), ("velocity", _TWIST, 6), ("acceleration", _ACCELERATION, 6), ("wrench", _WRENCH, 6))
     channels = [Channel(f"reference/{task.frame}/{name}", unit, (k,), axis_labels(k)) for name, unit, k in fields]
     names = [name for name, _, _ in fields]
@@ -172,10 +172,10 @@ def _task(index: int, task: TaskReference) -> Group:
             for name in given
         ]
     pick = attrgetter(*names)
-    return Group(lambda tick: pick(tick.reference.tasks[index]), tuple(channels))
+    return ChannelGroup(lambda tick: pick(tick.reference.tasks[index]), tuple(channels))
 
 
-def _truth(tick: Tick, joints: tuple[str, ...]) -> list[Group]:
+def _truth(tick: Tick, joints: tuple[str, ...]) -> list[ChannelGroup]:
     truth = tick.truth
     if truth is None:
         return []
@@ -183,7 +183,7 @@ def _truth(tick: Tick, joints: tuple[str, ...]) -> list[Group]:
     if truth.limit_excess is not None:
         fields.append(("limit_excess", _JOINT))
     channels = tuple(Channel(f"truth/{name}", unit, (len(joints),), joints) for name, unit in fields)
-    found = [Group(_attributes([f"truth.{name}" for name, _ in fields]), channels)]
+    found = [ChannelGroup(_attributes([f"truth.{name}" for name, _ in fields]), channels)]
     for field, name, unit, shape in (
         ("positions", "{}/position", "m", (3,)),
         ("rotations", "{}/rotation", "1", (3, 3)),
@@ -200,7 +200,7 @@ def _labels(shape: tuple[int, ...]) -> tuple[str, ...]:
     return ("x", "y", "z", "qw", "qx", "qy", "qz") if shape == (7,) else axis_labels(math.prod(shape))
 
 
-def _diagnostics(tick: Tick, signal: str, units: Sequence[Channel]) -> tuple[list[Group], list[Group]]:
+def _diagnostics(tick: Tick, signal: str, units: Sequence[Channel]) -> tuple[list[ChannelGroup], list[ChannelGroup]]:
     entries = getattr(tick, signal).diagnostics
     if not isinstance(entries, Mapping) or not all(isinstance(name, str) for name in entries):
         raise ShapeError(f"the {signal}'s diagnostics must be a mapping from names to numbers, got {entries!r:.80}")
@@ -228,16 +228,16 @@ def _registered(name: str, units: Sequence[Channel]) -> tuple[str, tuple[str, ..
     return "", ()
 
 
-def _both(signal: str, channels: list[Channel]) -> list[Group]:
+def _both(signal: str, channels: list[Channel]) -> list[ChannelGroup]:
     keys = tuple(channel.name for channel in channels)
     return [_mapping(f"{signal}.diagnostics", keys, tuple(channels))] if keys else []
 
 
-def _mapping(path: str, keys: tuple[str, ...], channels: tuple[Channel, ...]) -> Group:
+def _mapping(path: str, keys: tuple[str, ...], channels: tuple[Channel, ...]) -> ChannelGroup:
     find, pick = attrgetter(path), itemgetter(*keys)
     if len(keys) == 1:
-        return Group(lambda tick: (pick(find(tick)),), channels)
-    return Group(lambda tick: pick(find(tick)), channels)
+        return ChannelGroup(lambda tick: (pick(find(tick)),), channels)
+    return ChannelGroup(lambda tick: pick(find(tick)), channels)
 
 
 def _attributes(paths: list[str]) -> Callable[[Tick], Sequence[Any]]:

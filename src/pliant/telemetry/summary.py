@@ -50,7 +50,7 @@ class Metric:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class CaseSummary:
     """The result of one case with one controller."""
 
     case: str
@@ -85,7 +85,7 @@ class Summary:
 
     study: str
     seed: int | None
-    cases: tuple[Case, ...] = ()
+    cases: tuple[CaseSummary, ...] = ()
     version: str = field(default=pliant.__version__)
 
     def write(self, folder: Path) -> Path:
@@ -157,7 +157,7 @@ def _worst(found: Sequence[Metric]) -> Metric:
     return replace(found[0], value=worst, runs=len(found), worst=True)
 
 
-def _case_to_json(case: Case) -> dict[str, Any]:
+def _case_to_json(case: CaseSummary) -> dict[str, Any]:
     content: dict[str, Any] = {
         "case": case.case,
         "controller": case.name,
@@ -192,7 +192,7 @@ def _number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _case_from_json(content: dict[str, Any]) -> Case:
+def _case_from_json(content: dict[str, Any]) -> CaseSummary:
     metrics = tuple(
         Metric(
             name=name,
@@ -208,7 +208,7 @@ def _case_from_json(content: dict[str, Any]) -> Case:
         for name, about in content["metrics"].items()
     )
     row = content.get("row", {"controller": content["controller"]})
-    return Case(
+    return CaseSummary(
         case=content["case"],
         controller=row["controller"],
         variant=row.get("variant", ""),

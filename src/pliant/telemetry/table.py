@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from pliant.telemetry.proportion import bound_text, share_text
-from pliant.telemetry.summary import Case, Metric, Summary
+from pliant.telemetry.summary import CaseSummary, Metric, Summary
 
 MET, MISSED = "✓", "✗"
 COUNTING = (
@@ -93,7 +93,7 @@ def target_text(metric: Metric) -> str:
     return f"{'≥' if metric.at_least else '≤'} {number(metric.target)}"
 
 
-def failed_text(case: Case) -> str:
+def failed_text(case: CaseSummary) -> str:
     """How many runs of a case did not reach their end, with the bound of `share_bound` on the share; empty for a single
     run that did."""
     count = len(case.failures)
@@ -104,7 +104,7 @@ def failed_text(case: Case) -> str:
     return f"{count} of {case.runs} runs failed{bound}: {case.failures[0]}{more}"
 
 
-def _add_case(table: Table, case: Case, columns: _Columns, single: bool) -> None:
+def _add_case(table: Table, case: CaseSummary, columns: _Columns, single: bool) -> None:
     if not single:
         table.add_row(Text(f"{case.case} · {case.name}", style="bold"))
     indent = "" if single else "  "

@@ -35,7 +35,7 @@ Load = tuple[Mapping[str, CarriedMass], Mapping[str, str]]
 
 
 @dataclass(frozen=True)
-class Sensing:
+class SensorFilters:
     """How what the sensors say is filtered."""
 
     felt: bool = True
@@ -60,7 +60,7 @@ class Sensing:
     """how the pressed surface's tilt is estimated from the path of the contact; None: it is as believed"""
 
 
-def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Sensing) -> Estimator[Any]:
+def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: SensorFilters) -> Estimator[Any]:
     """Measurement → what a controller needs: filtered, with environment and disturbance where it asks for them.
 
     The environment is looked for, and a normal force explained, along the normal of the believed surface; along the

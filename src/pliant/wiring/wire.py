@@ -14,7 +14,7 @@ from pliant.interfaces import Controller, Lookahead, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.simulation.limited_plant import RunLimits
 from pliant.telemetry.channels import Channel
-from pliant.wiring.estimators import Sensing, estimator_for
+from pliant.wiring.estimators import SensorFilters, estimator_for
 from pliant.wiring.experiment import Experiment
 
 
@@ -31,7 +31,7 @@ class Offer:
     """preview that is wanted → references"""
     model: Robot | None = None
     """as the controller and the estimators believe it; None: `robot`"""
-    sensing: Sensing = field(default_factory=Sensing)
+    sensing: SensorFilters = field(default_factory=SensorFilters)
     torque_step: float | None = DEFAULT_SHARE
     """share of each joint's limit by which its torque may change per period; None: unbounded"""
     joint_limits: JointLimitsConfig | None = None

@@ -12,7 +12,7 @@ from pliant.signals import Command, Estimate, Reference
 
 
 @dataclass(frozen=True, slots=True)
-class SteeredState:
+class SteeredControllerState:
     """Who controls at present, and its state."""
 
     controller: Controller[Any]
@@ -21,7 +21,7 @@ class SteeredState:
     """the last successor that was asked for"""
 
 
-class SteeredController(Controller[SteeredState]):
+class SteeredController(Controller[SteeredControllerState]):
     """Another controller, until the desk names a successor, which starts at the estimate of that period.
 
     Args:
@@ -32,17 +32,19 @@ class SteeredController(Controller[SteeredState]):
     def __init__(self, inner: Controller[Any], desk: Desk) -> None:
         self.inner, self._desk = inner, desk
 
-    def init(self, estimate: Estimate) -> SteeredState:
+    def init(self, estimate: Estimate) -> SteeredControllerState:
         wish = self._desk.wishes.controller
         controller = wish or self.inner
-        return SteeredState(controller, controller.init(estimate), wish)
+        return SteeredControllerState(controller, controller.init(estimate), wish)
 
-    def step(self, estimate: Estimate, reference: Reference, state: SteeredState) -> tuple[Command, SteeredState]:
+    def step(
+        self, estimate: Estimate, reference: Reference, state: SteeredControllerState
+    ) -> tuple[Command, SteeredControllerState]:
         wish = self._desk.wishes.controller
         if wish is not state.wish and wish is not None:
-            state = SteeredState(wish, wish.init(estimate), wish)
+            state = SteeredControllerState(wish, wish.init(estimate), wish)
         command, inner = state.controller.step(estimate, reference, state.inner)
-        return command, SteeredState(state.controller, inner, state.wish)
+        return command, SteeredControllerState(state.controller, inner, state.wish)
 
 
 def with_core(controller: Controller[Any], core: Controller[Any]) -> Controller[Any]:

@@ -29,7 +29,7 @@ class Shift(NamedTuple):
     force_scale: float
 
 
-class SteeredState(NamedTuple):
+class SteeredSourceState(NamedTuple):
     """State of the source inside, and how far the target was moved."""
 
     inner: Any
@@ -43,7 +43,7 @@ class SteeredState(NamedTuple):
     """s of the task a second"""
 
 
-class SteeredSource(ReferenceSource[SteeredState]):
+class SteeredSource(ReferenceSource[SteeredSourceState]):
     """Another source's references with what the desk says: other tunings, another place, another force.
 
     The place moves at `TARGET_SPEED` at most; tunings and force are swapped whole between two ticks. Where the speed of
@@ -57,10 +57,10 @@ class SteeredSource(ReferenceSource[SteeredState]):
     def __init__(self, inner: ReferenceSource[Any], desk: Desk) -> None:
         self.inner, self._desk = inner, desk
 
-    def init(self, estimate: Estimate) -> SteeredState:
-        return SteeredState(self.inner.init(estimate), estimate.time, np.zeros(3), estimate.time)
+    def init(self, estimate: Estimate) -> SteeredSourceState:
+        return SteeredSourceState(self.inner.init(estimate), estimate.time, np.zeros(3), estimate.time)
 
-    def step(self, estimate: Estimate, state: SteeredState) -> tuple[Reference, SteeredState]:
+    def step(self, estimate: Estimate, state: SteeredSourceState) -> tuple[Reference, SteeredSourceState]:
         wishes, duration = self._desk.wishes, estimate.time - state.time
         most = HURRY * max(duration, 0.0)
         rate = state.rate + min(max(wishes.turned.speed - state.rate, -most), most)
@@ -80,7 +80,7 @@ class SteeredSource(ReferenceSource[SteeredState]):
             reference = replace(reference, tuning=wishes.whole)
         if reference.tasks and (shift.force_scale != 1.0 or np.any(shift.offset) or np.any(shift.velocity)):
             reference = _shifted(reference, shift)
-        return reference, SteeredState(inner, estimate.time, shift.offset, clock, rate)
+        return reference, SteeredSourceState(inner, estimate.time, shift.offset, clock, rate)
 
 
 def steered(source: ReferenceSource[Any], desk: Desk) -> ReferenceSource[Any]:

@@ -9,14 +9,14 @@ from typing import Any
 from pliant.entries import ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.interfaces import Controller
-from pliant.live.page.fields import Group, Leaf, at, group_of
+from pliant.live.page.fields import FieldGroup, Leaf, at, group_of
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
 
 @dataclass(frozen=True, slots=True)
-class Retuning:
+class ParameterChange:
     """What has to change so that a running controller has other parameters."""
 
     tunings: Mapping[str, ImpedanceTuning]
@@ -35,28 +35,28 @@ def online_fields(config: CaseConfig) -> frozenset[str]:
     return frozenset(name for name, value in values.items() if _is_online(value))
 
 
-def online_group(config: CaseConfig) -> Group:
+def online_group(config: CaseConfig) -> FieldGroup:
     """The values of these parts; a law or a shape of an impedance is not a number that a reference carries."""
     online = online_fields(config)
     group = group_of(config, skip=frozenset(type(config).model_fields) - online)
-    kept: list[Leaf | Group] = []
+    kept: list[Leaf | FieldGroup] = []
     for part in group.entries:
-        if isinstance(part, Group) and not isinstance(at(config, part.path), ExplorationConfig):
-            numbers = [entry for entry in part.entries if isinstance(entry, Group) or entry.kind != "choice"]
+        if isinstance(part, FieldGroup) and not isinstance(at(config, part.path), ExplorationConfig):
+            numbers = [entry for entry in part.entries if isinstance(entry, FieldGroup) or entry.kind != "choice"]
             kept.append(replace(part, entries=tuple(numbers)))
         else:
             kept.append(part)
     return replace(group, entries=tuple(kept))
 
 
-def retuning_of_case(config: CaseConfig) -> Retuning:
+def retuning_of_case(config: CaseConfig) -> ParameterChange:
     """The same for the parts that `online_fields` names."""
     parts = [getattr(config, name) for name in sorted(online_fields(config))]
     frame = str(getattr(config, "frame", ""))
     tuning = next((part.tuning() for part in parts if not isinstance(part, ExplorationConfig)), None)
     tunings = {} if tuning is None else {frame: tuning}
     whole = next((part for part in parts if isinstance(part, ExplorationConfig)), None)
-    return Retuning(tunings, whole, None)
+    return ParameterChange(tunings, whole, None)
 
 
 def _is_online(value: Any) -> bool:
@@ -75,7 +75,7 @@ def parameters_of(config: CaseConfig) -> ControllerConfig | None:
 
 def retuning(
     before: ControllerConfig, after: ControllerConfig, config: CaseConfig, robot: Robot, period: float
-) -> Retuning:
+) -> ParameterChange:
     """How to get from one set of parameters to another.
 
     Args:
@@ -91,11 +91,11 @@ def retuning(
     tunings = tunings_of(after)
     whole = _whole(after)
     if _structure(before) == _structure(after) and (tunings or whole is not None):
-        return Retuning(tunings, whole, None)
+        return ParameterChange(tunings, whole, None)
     entry = getattr(config, "entry", None)
     if not isinstance(entry, ControllerEntry):
-        return Retuning(tunings, whole, None)
-    return Retuning(tunings, whole, entry.build(robot, after, period))
+        return ParameterChange(tunings, whole, None)
+    return ParameterChange(tunings, whole, entry.build(robot, after, period))
 
 
 def tunings_of(config: ControllerConfig) -> Mapping[str, ImpedanceTuning]:

@@ -46,12 +46,12 @@ class Leaf:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class FieldGroup:
     """A configuration inside another one."""
 
     path: Path
     description: str
-    entries: tuple[Leaf | Group, ...]
+    entries: tuple[Leaf | FieldGroup, ...]
 
     @property
     def label(self) -> str:
@@ -66,7 +66,9 @@ class Group:
                 yield from entry.leaves()
 
 
-def group_of(config: BaseModel, path: Path = (), description: str = "", skip: frozenset[str] = frozenset()) -> Group:
+def group_of(
+    config: BaseModel, path: Path = (), description: str = "", skip: frozenset[str] = frozenset()
+) -> FieldGroup:
     """Reads a configuration.
 
     Args:
@@ -75,11 +77,11 @@ def group_of(config: BaseModel, path: Path = (), description: str = "", skip: fr
         description: of the whole.
         skip: fields to leave out at this level.
     """
-    entries: list[Leaf | Group] = []
+    entries: list[Leaf | FieldGroup] = []
     for name, about in type(config).model_fields.items():
         if name not in skip:
             entries += _entries(getattr(config, name), about, (*path, name))
-    return Group(path, description, tuple(entries))
+    return FieldGroup(path, description, tuple(entries))
 
 
 def at(config: BaseModel, path: Path) -> Any:
@@ -98,7 +100,7 @@ def nested(path: Path, value: Any) -> dict[str, Any]:
     return tree
 
 
-def _entries(value: Any, about: FieldInfo, path: Path) -> list[Leaf | Group]:
+def _entries(value: Any, about: FieldInfo, path: Path) -> list[Leaf | FieldGroup]:
     if isinstance(value, BaseModel):
         return [group_of(value, path, about.description or "")]
     if isinstance(value, Mapping) and value and all(isinstance(v, BaseModel) or v is None for v in value.values()):

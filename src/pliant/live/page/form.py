@@ -12,7 +12,7 @@ import viser
 
 from pliant.errors import PliantError
 from pliant.live.link.steering_lock import Seat
-from pliant.live.page.fields import Group, Leaf, Path
+from pliant.live.page.fields import FieldGroup, Leaf, Path
 
 Change = Callable[[Path, Any], None]
 """takes a new value at a place; raises PliantError if it may not be"""
@@ -29,7 +29,9 @@ class Form:
         expanded: whether folders of the first level are open.
     """
 
-    def __init__(self, gui: viser.GuiApi, seat: Seat, group: Group, change: Change, *, expanded: bool = True) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, seat: Seat, group: FieldGroup, change: Change, *, expanded: bool = True
+    ) -> None:
         self._gui, self._seat, self._change = gui, seat, change
         self._lock = threading.RLock()
         self._whole = gui.add_folder(None)
@@ -40,7 +42,7 @@ class Form:
         """Takes the controls off the page."""
         self._whole.remove()
 
-    def _fill(self, group: Group, expanded: bool, depth: int) -> None:
+    def _fill(self, group: FieldGroup, expanded: bool, depth: int) -> None:
         for entry in group.entries:
             if isinstance(entry, Leaf):
                 self._add(entry)

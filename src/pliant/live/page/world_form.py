@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from pliant.live.page.fields import Group, Path, group_of
+from pliant.live.page.fields import FieldGroup, Path, group_of
 from pliant.simulation import Plane, Scene
 from pliant.simulation.scene import Thing
 from pliant.spatial import frame_with_z_along, rpy
@@ -49,10 +49,10 @@ class SceneForm:
         self.scene = built
         self._values: dict[str, SurfaceForm] = {thing.name: _read(thing) for thing in built.things}
 
-    def group(self) -> Group:
+    def group(self) -> FieldGroup:
         """What can be changed: one group per thing."""
         groups = [group_of(values, (name,)) for name, values in self._values.items()]
-        return Group((), "", tuple(groups))
+        return FieldGroup((), "", tuple(groups))
 
     def changed(self, path: Path, value: Any) -> Scene:
         """The scene with one value changed. Raises ConfigError if the value breaks a rule."""

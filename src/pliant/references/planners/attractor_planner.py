@@ -14,7 +14,7 @@ from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import Array
 
 
-class AttractorState:
+class AttractorPlannerState:
     """Owned by the loop: plans and last targets by frame, time of the last tick."""
 
     __slots__ = ("inner", "plans", "targets", "time")
@@ -25,7 +25,7 @@ class AttractorState:
         self.targets: dict[str, Array] = {}
 
 
-class AttractorPlanner(ReferenceSource[AttractorState]):
+class AttractorPlanner(ReferenceSource[AttractorPlannerState]):
     """Positions by the attractor of [HapFIC] Tiseo et al. 2021, eq. 2-3; orientations pass unchanged. For comparison.
 
     Args:
@@ -37,16 +37,18 @@ class AttractorPlanner(ReferenceSource[AttractorState]):
     def __init__(self, inner: ReferenceSource[Any], place: Place, settings: AttractorSettings | None = None) -> None:
         self.inner, self.settings, self._place = inner, settings or AttractorSettings(), place
 
-    def init(self, estimate: Estimate) -> AttractorState:
-        return AttractorState(self.inner.init(estimate), estimate.time)
+    def init(self, estimate: Estimate) -> AttractorPlannerState:
+        return AttractorPlannerState(self.inner.init(estimate), estimate.time)
 
-    def step(self, estimate: Estimate, state: AttractorState) -> tuple[Reference, AttractorState]:
+    def step(self, estimate: Estimate, state: AttractorPlannerState) -> tuple[Reference, AttractorPlannerState]:
         goal, state.inner = self.inner.step(estimate, state.inner)
         period, state.time = estimate.time - state.time, estimate.time
         tasks = tuple([self._planned(task, estimate, state, period) for task in goal.tasks])
         return changed(goal, tasks=tasks), state
 
-    def _planned(self, task: TaskReference, estimate: Estimate, state: AttractorState, period: float) -> TaskReference:
+    def _planned(
+        self, task: TaskReference, estimate: Estimate, state: AttractorPlannerState, period: float
+    ) -> TaskReference:
         plan = state.plans.get(task.frame)
         if plan is None:
             plan = start(tuple(self._place(np.array(estimate.q), task.frame)[0].tolist()))

@@ -14,7 +14,7 @@ from pliant.errors import ConfigError, SignalError
 from pliant.frozen import changed
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Coming, instants, preview_of
-from pliant.references.planners.superposition import MotionLimits, Plan
+from pliant.references.planners.superposition import MotionLimits, Superposition
 from pliant.references.planners.workspace import Workspace
 from pliant.references.trajectories.trajectory import vector
 from pliant.signals import Estimate, Reference, TaskReference
@@ -45,8 +45,8 @@ class PlannedFrame:
     __slots__ = ("base", "clamped", "linear", "position", "resting", "rotation", "taken", "turn")
 
     def __init__(self, position: Array, rotation: Array) -> None:
-        self.linear = Plan(_floats(position))
-        self.turn = Plan((0.0, 0.0, 0.0))
+        self.linear = Superposition(_floats(position))
+        self.turn = Superposition((0.0, 0.0, 0.0))
         """rotation vector of R·baseᵀ, rad"""
         self.base = rotation
         self.clamped: Array = np.zeros(3)
@@ -170,7 +170,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         turn = frame.turn.target
         if task.rotation is not None:
             if not frame.turn.folded(time).pieces:
-                frame.base, frame.turn = _rotation(frame, time), Plan((0.0, 0.0, 0.0))
+                frame.base, frame.turn = _rotation(frame, time), Superposition((0.0, 0.0, 0.0))
             turn = _nearest(log3(task.rotation @ frame.base.T), frame.turn.target)
             frame.rotation = task.rotation
         way = float(np.linalg.norm(np.subtract(target, frame.linear.target)))
@@ -210,7 +210,7 @@ def _rotation(frame: PlannedFrame, time: float) -> Array:
     return exp3(turn) @ frame.base if any(turn) else frame.base
 
 
-def _angular_velocity(plan: Plan, time: float) -> Array:
+def _angular_velocity(plan: Superposition, time: float) -> Array:
     """World axes (3,), rad/s: ω = J_l(r) ṙ of the rotation vector r."""
     r, rate, _ = plan.at(time)
     return _left_jacobian(r) @ np.array(rate)

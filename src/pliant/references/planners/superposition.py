@@ -41,7 +41,7 @@ class MotionLimits:
         return max(0.5 * math.pi * distance / self.speed, math.pi * math.sqrt(0.5 * distance / self.acceleration))
 
 
-class Piece(NamedTuple):
+class HalfCosine(NamedTuple):
     """One half cosine."""
 
     start: float
@@ -54,7 +54,7 @@ class Piece(NamedTuple):
     """(k,) where it leads"""
 
 
-class Motion(NamedTuple):
+class PlannedMotion(NamedTuple):
     """The planner at one instant; each tuple (k,)."""
 
     position: tuple[float, ...]
@@ -63,12 +63,12 @@ class Motion(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class Superposition:
     """Pieces under way on top of a base point. Immutable: retargeting returns another plan."""
 
     base: tuple[float, ...]
     """(k,) where all finished pieces led"""
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[HalfCosine, ...] = ()
     """in the order of their starts, which is the order of their ends"""
 
     @property
@@ -80,7 +80,7 @@ class Plan:
         """s at which it comes to rest; minus infinity if it is at rest."""
         return self.pieces[-1].start + self.pieces[-1].duration if self.pieces else -math.inf
 
-    def folded(self, time: float) -> Plan:
+    def folded(self, time: float) -> Superposition:
         """The same motion from `time` on, finished pieces dropped."""
         pieces = self.pieces
         if not pieces or time < pieces[0].start + pieces[0].duration:
@@ -88,9 +88,9 @@ class Plan:
         done = 0
         while done < len(pieces) and time >= pieces[done].start + pieces[done].duration:
             done += 1
-        return Plan(pieces[done - 1].target, pieces[done:])
+        return Superposition(pieces[done - 1].target, pieces[done:])
 
-    def at(self, time: float) -> Motion:
+    def at(self, time: float) -> PlannedMotion:
         """Position, velocity and acceleration at a time in s."""
         position, velocity = list(self.base), [0.0] * len(self.base)
         acceleration = [0.0] * len(self.base)
@@ -106,9 +106,11 @@ class Plan:
                 position[axis] += share * length
                 velocity[axis] += speed * length
                 acceleration[axis] += push * length
-        return Motion(tuple(position), tuple(velocity), tuple(acceleration))
+        return PlannedMotion(tuple(position), tuple(velocity), tuple(acceleration))
 
-    def retargeted(self, time: float, target: tuple[float, ...], limits: MotionLimits, least: float = 0.0) -> Plan:
+    def retargeted(
+        self, time: float, target: tuple[float, ...], limits: MotionLimits, least: float = 0.0
+    ) -> Superposition:
         """The plan with a new target.
 
         A piece that has not begun yet is replaced. The new one starts now and lasts as long as its own limits and the
@@ -123,14 +125,14 @@ class Plan:
             least: s that the new piece shall last at least (to go along with another group of axes).
         """
         begun = tuple(piece for piece in self.pieces if piece.start < time)
-        under_way = Plan(self.base, begun).folded(time)
+        under_way = Superposition(self.base, begun).folded(time)
         way = tuple(b - a for a, b in zip(under_way.target, target, strict=True))
         distance = math.hypot(*way)
         if distance == 0.0 and under_way.target == target:
             return under_way
         shortest = max(limits.duration(distance), least, 1e-6)
         start, duration = _earliest(under_way, time, way, shortest, limits)
-        return Plan(under_way.base, (*under_way.pieces, Piece(start, duration, way, target)))
+        return Superposition(under_way.base, (*under_way.pieces, HalfCosine(start, duration, way, target)))
 
 
 _STRETCHES = np.array([1.0, 1.25, 1.6, 2.2, 3.0])
@@ -140,7 +142,7 @@ _SLACK = 1.0 + 1e-9
 
 
 def _earliest(
-    plan: Plan, time: float, way: tuple[float, ...], shortest: float, limits: MotionLimits
+    plan: Superposition, time: float, way: tuple[float, ...], shortest: float, limits: MotionLimits
 ) -> tuple[float, float]:
     """Start and duration, s, of a new piece: the pair that ends first among those that keep the limits."""
     if not plan.pieces:
@@ -161,7 +163,7 @@ def _earliest(
 
 
 def _keeps_limits(
-    plan: Plan,
+    plan: Superposition,
     time: float,
     rest: float,
     starts: Array,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from pliant.references.postures.inverse_kinematics import Box, PoseSolver, Target
+from pliant.references.postures.inverse_kinematics import JointBox, PoseSolver, Target
 from pliant.robot import Robot
 from pliant.spatial import Array, log3
 
@@ -31,7 +31,7 @@ class AicoSolver(PoseSolver):
         super().__init__(robot, frame)
         self._prior_precision = np.eye(robot.n) * self.POSTURE_COST**2  # W, with C = 1 (m² and rad²)
 
-    def solve(self, guess: Array, prior: Array, box: Box, target: Target) -> Array:
+    def solve(self, guess: Array, prior: Array, box: JointBox, target: Target) -> Array:
         q = box.clip(guess)
         for _ in range(self.MAX_ITERATIONS):
             error, J = self._linearised(q, target)

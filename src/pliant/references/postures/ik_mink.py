@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from pliant.mujoco_model import spec_from_robot
-from pliant.references.postures.inverse_kinematics import Box, PoseSolver, Target
+from pliant.references.postures.inverse_kinematics import JointBox, PoseSolver, Target
 from pliant.robot import Robot
 from pliant.spatial import Array
 
@@ -29,7 +29,7 @@ class MinkSolver(PoseSolver):
         # Joint ranges are a box that this class sets for every call, so that they can bound the step per sample too.
         self._range = _BoxLimit(robot.n)
 
-    def solve(self, guess: Array, prior: Array, box: Box, target: Target) -> Array:
+    def solve(self, guess: Array, prior: Array, box: JointBox, target: Target) -> Array:
         q = box.clip(guess)
         self._range.box = box
         self._posture.set_target(prior)
@@ -50,7 +50,7 @@ class MinkSolver(PoseSolver):
 class _BoxLimit(mink.Limit):
     """lower ≤ q + Δq ≤ upper."""
 
-    box: Box
+    box: JointBox
 
     def __init__(self, n: int) -> None:
         self._rows = np.vstack([np.eye(n), -np.eye(n)])

@@ -40,7 +40,7 @@ class Target(NamedTuple):
         return Target(self.position, self.rotation @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), True)
 
 
-class Box(NamedTuple):
+class JointBox(NamedTuple):
     """Range of configurations that are allowed."""
 
     lower: Array
@@ -65,7 +65,7 @@ class PoseSolver(ABC):
         self._data = robot.model.createData()
 
     @abstractmethod
-    def solve(self, guess: Array, prior: Array, box: Box, target: Target) -> Array:
+    def solve(self, guess: Array, prior: Array, box: JointBox, target: Target) -> Array:
         """The configuration (n,) inside the box that reaches the target as well as it can, near `prior`."""
 
     def jacobian(self, q: Array) -> Array:
@@ -89,6 +89,6 @@ class PoseSolver(ABC):
         return np.array(self._data.oMf[self._id].rotation)
 
 
-def joint_box(robot: Robot) -> Box:
+def joint_box(robot: Robot) -> JointBox:
     """The joint limits of a robot, ±4π where it has none."""
-    return Box(np.maximum(robot.position_lower, -4.0 * math.pi), np.minimum(robot.position_upper, 4.0 * math.pi))
+    return JointBox(np.maximum(robot.position_lower, -4.0 * math.pi), np.minimum(robot.position_upper, 4.0 * math.pi))

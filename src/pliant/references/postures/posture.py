@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError, PliantError, options
 from pliant.references.postures.ik_aico import AicoSolver
-from pliant.references.postures.inverse_kinematics import Box, PoseSolver, Target, joint_box
+from pliant.references.postures.inverse_kinematics import JointBox, PoseSolver, Target, joint_box
 from pliant.references.source import FrameMotion
 from pliant.robot import Robot
 from pliant.spatial import Array
@@ -156,7 +156,7 @@ def first_postures(solver: PoseSolver, target: Target, nominal: Array | None, ch
     return sorted(found, key=lambda q: -freedom(solver, box, q))
 
 
-def freedom(solver: PoseSolver, box: Box, q: Array) -> float:
+def freedom(solver: PoseSolver, box: JointBox, q: Array) -> float:
     """Least joint range left, as a share of the half range, times the least singular value of the frame's Jacobian."""
     margin = float(np.min(np.minimum(q - box.lower, box.upper - q) / (box.upper - box.lower))) * 2.0
     return margin * float(np.linalg.svd(solver.jacobian(q), compute_uv=False)[-1])
@@ -174,7 +174,7 @@ def _follow(
     worst = solver.shortfall(q, _target(motion, 0.0, chosen))
     for index in range(1, times.shape[0]):
         target = _target(motion, float(times[index]), chosen)
-        reach = Box(np.maximum(limits.lower, q - speed * period), np.minimum(limits.upper, q + speed * period))
+        reach = JointBox(np.maximum(limits.lower, q - speed * period), np.minimum(limits.upper, q + speed * period))
         q = solver.solve(q, q + drift * (preferred - q), reach, target)
         short = solver.shortfall(q, target)
         if short[0] > chosen.tolerance or short[1] > 10.0 * chosen.tolerance:

@@ -2,6 +2,6 @@
 
 from pliant.references.reach.check import ReachCheck, check_reach
 from pliant.references.reach.course import Course, course_of
-from pliant.references.reach.margins import Bounds, Margin
+from pliant.references.reach.margins import Margin, ReachBounds
 
-__all__ = ["Bounds", "Course", "Margin", "ReachCheck", "check_reach", "course_of"]
+__all__ = ["Course", "Margin", "ReachBounds", "ReachCheck", "check_reach", "course_of"]

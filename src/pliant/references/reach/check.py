@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pliant.errors import ConfigError
 from pliant.references.postures.posture import PostureOptions, PosturePath, UnreachableError, solve_posture
 from pliant.references.reach.course import Course
-from pliant.references.reach.margins import Bounds, Margin, margins
+from pliant.references.reach.margins import Margin, ReachBounds, margins
 from pliant.references.reach.remedy import remedy
 from pliant.robot import Robot
 from pliant.spatial import Array
@@ -71,7 +71,7 @@ def check_reach(
     frame: str,
     course: Course,
     others: Sequence[Callable[[], Course]] = (),
-    bounds: Bounds | None = None,
+    bounds: ReachBounds | None = None,
     posture: PostureOptions | None = None,
     nominal: Array | None = None,
     solved: PosturePath | None = None,
@@ -93,7 +93,7 @@ def check_reach(
         "Reachable" is a statement on the sampled course with the joint path found, from rest over its first place; how
         a controller gets through it is another matter.
     """
-    limits = bounds or Bounds()
+    limits = bounds or ReachBounds()
     options = posture or PostureOptions()
     path, first = _check(robot, frame, course, "believed", limits, nominal, options, solved)
     found = [first]
@@ -116,7 +116,7 @@ def _check(
     frame: str,
     course: Course,
     label: str,
-    bounds: Bounds,
+    bounds: ReachBounds,
     nominal: Array | None,
     options: PostureOptions,
     solved: PosturePath | None = None,

@@ -10,7 +10,7 @@ import numpy as np
 
 from pliant.errors import ConfigError
 from pliant.references.source import FrameMotion
-from pliant.references.toolpaths.pressing import ForceProfile
+from pliant.references.toolpaths.pressing import PressingForce
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.references.trajectories.rotation import QuaternionSpline
 from pliant.references.trajectories.spline import Spline
@@ -68,7 +68,7 @@ class Course:
         return replace(self, places=self.places + lifted[:, None] * self.normals)
 
 
-def course_of(path: Toolpath, force: ForceProfile, stand_off: float, approach_speed: float, leave: float) -> Course:
+def course_of(path: Toolpath, force: PressingForce, stand_off: float, approach_speed: float, leave: float) -> Course:
     """The course of a task on the believed surface.
 
     Args:

@@ -20,7 +20,7 @@ _ARM = 0.25  # m: a turn by 1 rad counts as much as a way of so many metres
 
 
 @dataclass(frozen=True)
-class Bounds:
+class ReachBounds:
     """What a task must leave.
 
     Raises:
@@ -74,7 +74,7 @@ class Margin:
 
 
 def margins(
-    robot: Robot, frame: str, course: Course, posture: PosturePath, bounds: Bounds, spins: bool
+    robot: Robot, frame: str, course: Course, posture: PosturePath, bounds: ReachBounds, spins: bool
 ) -> tuple[Margin, ...]:
     """Joint range, freedom, load and speed at every sample of a course.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from pliant.references.postures.posture import PostureOptions, UnreachableError, solve_posture
 from pliant.references.reach.course import Course
-from pliant.references.reach.margins import Bounds, Margin, margins
+from pliant.references.reach.margins import Margin, ReachBounds, margins
 from pliant.robot import Robot
 from pliant.spatial import Array
 
@@ -21,7 +21,7 @@ def remedy(
     frame: str,
     course: Course,
     left: Sequence[Margin],
-    bounds: Bounds,
+    bounds: ReachBounds,
     spins: bool,
     nominal: Array | None,
 ) -> str:
@@ -61,7 +61,9 @@ def _ways(course: Course) -> list[tuple[str, Array]]:
     ]
 
 
-def _possible(robot: Robot, frame: str, course: Course, bounds: Bounds, spins: bool, nominal: Array | None) -> bool:
+def _possible(
+    robot: Robot, frame: str, course: Course, bounds: ReachBounds, spins: bool, nominal: Array | None
+) -> bool:
     try:
         period = max(float(course.times[-1]) / 60.0, 0.02)
         options = PostureOptions("aico", period, spins=spins, restarts=2)  # the faster method
@@ -73,7 +75,7 @@ def _possible(robot: Robot, frame: str, course: Course, bounds: Bounds, spins: b
 
 
 def _lighter(
-    robot: Robot, frame: str, course: Course, bounds: Bounds, spins: bool, nominal: Array | None
+    robot: Robot, frame: str, course: Course, bounds: ReachBounds, spins: bool, nominal: Array | None
 ) -> float | None:
     for share in (0.75, 0.5, 0.25, 0.1):
         if _possible(robot, frame, replace(course, force=share * course.force), bounds, spins, nominal):

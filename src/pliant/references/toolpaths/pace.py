@@ -13,7 +13,7 @@ _STILL = 1e-12  # m/s
 _SHARP = 0.3  # rad between two steps: the way turns back or has a corner, where only standing still is slow enough
 
 
-class Pace(NamedTuple):
+class PathPace(NamedTuple):
     """When the points of a path are passed, and how fast."""
 
     times: Array
@@ -35,7 +35,7 @@ class Pace(NamedTuple):
         return self.way[i] + np.where(still, stop_to_stop, from_speed)
 
 
-def pace(points: Array, speed: Array | float, acceleration: float) -> Pace:
+def pace(points: Array, speed: Array | float, acceleration: float) -> PathPace:
     """When the points of a path are passed, from rest to rest.
 
     Along the path the speed changes by at most `acceleration`, and in bends v² κ stays below it, so the whole
@@ -64,7 +64,7 @@ def pace(points: Array, speed: Array | float, acceleration: float) -> Pace:
     mean = 0.5 * (v[1:] + v[:-1])
     still = mean < _STILL
     dt = np.where(still, 2.0 * np.sqrt(ds / acceleration), ds / np.where(still, 1.0, mean))
-    return Pace(_sums(dt), _sums(ds), v)
+    return PathPace(_sums(dt), _sums(ds), v)
 
 
 def _sums(parts: Array) -> Array:

@@ -16,7 +16,7 @@ from pliant.references.trajectories.waypoints import Waypoints
 
 
 @dataclass(frozen=True)
-class ForceProfile:
+class PressingForce:
     """Normal force along a path: straight lines between knots, constant before the first and after the last.
 
     Raises:
@@ -42,7 +42,7 @@ class ForceProfile:
             raise ConfigError(f"a force on a surface pushes: not negative (N), got {list(self.forces)}")
 
     @classmethod
-    def constant(cls, force: float) -> ForceProfile:
+    def constant(cls, force: float) -> PressingForce:
         """The same force in N all the way."""
         return cls((0.0,), (float(force),))
 

@@ -20,7 +20,7 @@ from pliant.robot import Robot
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, LinkCapsule, MujocoPlant
 from pliant.simulation.imperfections.actuation import ActuationConfig
 from pliant.simulation.imperfections.sensing import SensingConfig
-from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.config import HapticCaseConfig
 from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import warnings_of
 from pliant.studies.haptic.scene import scene_of
@@ -30,7 +30,7 @@ from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
 
-def build(config: HapticConfig) -> Experiment:
+def build(config: HapticCaseConfig) -> Experiment:
     """Robot, plant, estimator, references and controller of one run.
 
     Raises:
@@ -56,7 +56,7 @@ def build(config: HapticConfig) -> Experiment:
     return wired(entry, parameters, offer)
 
 
-def robot_of(config: HapticConfig) -> Robot:
+def robot_of(config: HapticCaseConfig) -> Robot:
     """The leg, as heavy as the configuration says."""
     robot = Robot.load(config.robot, locked=config.locked, rotor_inertia=config.rotor_inertia)
     if config.hardware.mass_scale is None:
@@ -70,7 +70,7 @@ def robot_of(config: HapticConfig) -> Robot:
 
 
 def planned(
-    config: HapticConfig, robot: Robot, parameters: ControllerConfig, lookahead: Lookahead | None = None
+    config: HapticCaseConfig, robot: Robot, parameters: ControllerConfig, lookahead: Lookahead | None = None
 ) -> ReferenceSource[Any]:
     """What the user wants, planned. The references carry the parameters of the exploration.
 
@@ -93,7 +93,7 @@ def planned(
     )
 
 
-def plant_of(config: HapticConfig, robot: Robot) -> Plant[Any]:
+def plant_of(config: HapticCaseConfig, robot: Robot) -> Plant[Any]:
     """The leg in its environment, with its imperfections where there are any."""
     hardware, environment = config.hardware, config.environment
     links = [LinkCapsule("shank", config.frame, 0.02, end_margin=0.04)] if environment.shank else []

@@ -12,9 +12,9 @@ from pliant.studies.haptic.cases_ball import BALL_CASES
 from pliant.studies.haptic.cases_box import BOX_CASES
 from pliant.studies.haptic.cases_floor import FLOOR_CASES
 from pliant.studies.haptic.cases_online import ONLINE_CASES
-from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.config import HapticCaseConfig
 
-CASES: Mapping[str, Case[HapticConfig]] = {
+CASES: Mapping[str, Case[HapticCaseConfig]] = {
     case.config.case: case for case in (*FLOOR_CASES, *BOX_CASES, *BALL_CASES, *ONLINE_CASES)
 }
 """by name; the first is what `pliant run haptic` does"""

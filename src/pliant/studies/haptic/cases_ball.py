@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.studies.haptic.config import Check, HapticConfig
+from pliant.studies.haptic.config import Check, HapticCaseConfig
 from pliant.studies.haptic.rows import plain
-from pliant.studies.haptic.scene_config import BallConfig, Environment, Floor, Hardware, Material
-from pliant.studies.haptic.steps_config import Impedance, Planner, Step
+from pliant.studies.haptic.scene_config import BallConfig, Floor, HapticScene, Hardware, Material
+from pliant.studies.haptic.steps_config import FootImpedance, HapticPlannerConfig, Step
 
 _X = 0.12  # m, of the ball
 _Z = 0.21  # m: 10 mm below the foot's height when it touches the top
 _ABOVE = (0.0, 0.7489, -2.2459)  # rad: foot at x = 0.12 m, z = 0.26 m
-_FIXED = Environment(floor=None, ball=BallConfig(position=(_X, 0.0, 0.1), mass=0.0))
-_FREE = Environment(floor=Floor(material=Material()), ball=BallConfig(position=(_X, 0.0, 0.1)), shank=True)
+_FIXED = HapticScene(floor=None, ball=BallConfig(position=(_X, 0.0, 0.1), mass=0.0))
+_FREE = HapticScene(floor=Floor(material=Material()), ball=BallConfig(position=(_X, 0.0, 0.1)), shank=True)
 
 
 def _steps(forces: tuple[float, float, float]) -> tuple[Step, ...]:
@@ -45,7 +45,7 @@ def _checks(forces: tuple[float, float, float], settle: tuple[float, float, floa
 
 _FORCES = (15.0, 25.0, 8.0)  # N
 
-BALL = HapticConfig(
+BALL = HapticCaseConfig(
     case="ball",
     duration=5.0,
     environment=_FIXED,
@@ -58,7 +58,7 @@ BALL = HapticConfig(
 _BRISK = ExplorationConfig(gain=60.0)  # 1/s: the estimated stiffness slows the regulation down where it rings
 _LIGHT = (8.0, 12.0, 5.0)  # N, on a ball that gives way above and below
 
-BALL_FREE = HapticConfig(
+BALL_FREE = HapticCaseConfig(
     case="ball-free",
     duration=13.8,
     environment=_FREE,
@@ -85,7 +85,7 @@ BALL_FREE = HapticConfig(
 
 _REACHABLE = 32.3  # N: (x_b + p) K_e K_0/(K_e + K_0) with p = 10 mm, K_e = 1e3 N/m, K_0 = 12e3 N/m
 
-BALL_UNREACHABLE = HapticConfig(
+BALL_UNREACHABLE = HapticCaseConfig(
     case="ball-unreachable",
     duration=4.0,
     environment=_FIXED,
@@ -114,7 +114,7 @@ BALL_UNREACHABLE = HapticConfig(
 
 # [HapFIC] sec. III, experiment 4
 _ACTUATOR = Hardware(joint_damping=11.46, bandwidth=20.0, peak_torque=40.0)
-_SOFTER = Impedance(stiffness=(6000.0, 6000.0, 6000.0), force_max=(150.0, 150.0, 150.0))
+_SOFTER = FootImpedance(stiffness=(6000.0, 6000.0, 6000.0), force_max=(150.0, 150.0, 150.0))
 
 BALL_ACTUATOR = BALL.model_copy(
     update={
@@ -126,13 +126,13 @@ BALL_ACTUATOR = BALL.model_copy(
     }
 )
 
-FLOOR_ACTUATOR = HapticConfig(
+FLOOR_ACTUATOR = HapticCaseConfig(
     case="floor-actuator",
     duration=7.5,
     hardware=_ACTUATOR,
     impedance=_SOFTER,
     exploration=_BRISK,
-    planner=Planner(speed=0.05),  # m/s: the joints' damping lets the foot lag behind by 9 mm at 0.2 m/s
+    planner=HapticPlannerConfig(speed=0.05),  # m/s: the joints' damping lets the foot lag behind by 9 mm at 0.2 m/s
     start=(0.0, 0.5402, -1.2266),
     steps=(
         Step(time=0.0, name="reach", target=(0.08, 0.0, 0.017), force=(0.0, 0.0, 40.0)),

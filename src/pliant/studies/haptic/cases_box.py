@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from pliant.studies.haptic.config import Check, HapticConfig
+from pliant.studies.haptic.config import Check, HapticCaseConfig
 from pliant.studies.haptic.rows import plain
-from pliant.studies.haptic.scene_config import BoxConfig, Environment, Floor, Material
+from pliant.studies.haptic.scene_config import BoxConfig, Floor, HapticScene, Material
 from pliant.studies.haptic.steps_config import Step
 
 _ROUGH = Floor(material=Material())
 
 
-def _beside(x: float) -> Environment:
+def _beside(x: float) -> HapticScene:
     """A box of 0.12 m width, 0.2 m high, centred at x, on a floor with friction; the shank touches, too."""
-    return Environment(floor=_ROUGH, box=BoxConfig(position=(x, 0.0, 0.1)), shank=True)
+    return HapticScene(floor=_ROUGH, box=BoxConfig(position=(x, 0.0, 0.1)), shank=True)
 
 
-BOX_TOP = HapticConfig(
+BOX_TOP = HapticCaseConfig(
     case="box-top",
     duration=6.0,
     environment=_beside(0.16),
@@ -35,7 +35,7 @@ BOX_TOP = HapticConfig(
     snapshots=(0.0, 1.5, 2.8, 4.8),
 )
 
-BOX_TIP = HapticConfig(
+BOX_TIP = HapticCaseConfig(
     case="box-tip",
     duration=7.2,
     environment=_beside(0.24),
@@ -57,7 +57,7 @@ BOX_TIP = HapticConfig(
     snapshots=(0.0, 2.8, 3.7, 4.2, 7.1),
 )
 
-BOX_SHANK = HapticConfig(
+BOX_SHANK = HapticCaseConfig(
     case="box-shank",
     duration=6.0,
     environment=_beside(0.16),

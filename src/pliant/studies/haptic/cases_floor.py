@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pliant.studies.haptic.config import Check, HapticConfig
+from pliant.studies.haptic.config import Check, HapticCaseConfig
 from pliant.studies.haptic.rows import plain
 from pliant.studies.haptic.scene_config import Hardware
 from pliant.studies.haptic.steps_config import Step
@@ -17,7 +17,7 @@ _STEPS = (
     Step(time=7.6, name="20 N", force=(0.0, 0.0, 20.0)),
 )
 
-FLOOR = HapticConfig(
+FLOOR = HapticCaseConfig(
     case="floor",
     duration=8.2,
     steps=_STEPS,
@@ -34,7 +34,7 @@ FLOOR = HapticConfig(
     snapshots=(0.0, 0.75, 2.75, 4.5, 8.0),
 )
 
-FLOOR_NOISE = HapticConfig(
+FLOOR_NOISE = HapticCaseConfig(
     case="floor-noise",
     duration=3.0,
     hardware=Hardware(force_noise=1.0),

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from pliant.experiments.case import Case, Row
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.studies.haptic.config import Check, HapticConfig
+from pliant.studies.haptic.config import Check, HapticCaseConfig
 from pliant.studies.haptic.delays import delay_figure, delay_rows
 from pliant.studies.haptic.parameters import parameter_figure, parameter_rows
 from pliant.studies.haptic.rows import drawn, plain
-from pliant.studies.haptic.scene_config import Environment, Floor, Material
-from pliant.studies.haptic.steps_config import Impedance, OnlineChanges, Planner, Step
+from pliant.studies.haptic.scene_config import Floor, HapticScene, Material
+from pliant.studies.haptic.steps_config import FootImpedance, HapticPlannerConfig, OnlineChanges, Step
 
-_ROUGH = Environment(floor=Floor(material=Material()))
+_ROUGH = HapticScene(floor=Floor(material=Material()))
 
-ONLINE = HapticConfig(
+ONLINE = HapticCaseConfig(
     case="online",
     duration=15.0,
     environment=_ROUGH,
@@ -40,9 +40,9 @@ _TARGETS: tuple[tuple[float, float, float], ...] = (
 )
 """m; the foot touches at z = 0.02"""
 
-TARGET_SEQUENCE = HapticConfig(
+TARGET_SEQUENCE = HapticCaseConfig(
     case="target-sequence",
-    planner=Planner(speed=0.1),
+    planner=HapticPlannerConfig(speed=0.1),
     exploration=ExplorationConfig(gain=90.0),  # 1/s: the motion presses on at up to 0.1 m/s where it finds the floor
     duration=9.6,
     environment=_ROUGH,
@@ -59,7 +59,7 @@ TARGET_SEQUENCE = HapticConfig(
     snapshots=(1.1, 2.3, 4.7, 6.9, 9.5),
 )
 
-DELAY = HapticConfig(
+DELAY = HapticCaseConfig(
     case="delay",
     duration=2.0,
     environment=_ROUGH,
@@ -76,11 +76,11 @@ DELAY = HapticConfig(
     ),
 )
 
-RANDOM = HapticConfig(
+RANDOM = HapticCaseConfig(
     case="random",
     duration=3.0,
     random=True,
-    impedance=Impedance(),
+    impedance=FootImpedance(),
     steps=(Step(time=0.0, name="press", target=(0.10, 0.0, 0.015), force=(0.0, 0.0, 20.0)),),
     checks=(
         Check(kind="rms", name="force at rest, rms over F_d", begin=2.6, target=0.02, relative=True),
@@ -92,7 +92,7 @@ RANDOM = HapticConfig(
     ),
 )
 
-PARAMETERS = HapticConfig(
+PARAMETERS = HapticCaseConfig(
     case="parameters",
     duration=2.4,
     environment=_ROUGH,

@@ -23,8 +23,8 @@ from pliant.experiments.config import Config
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.robot import Robot
 from pliant.studies.haptic.fields import quantity
-from pliant.studies.haptic.scene_config import Environment, Hardware
-from pliant.studies.haptic.steps_config import Impedance, OnlineChanges, Planner, Step
+from pliant.studies.haptic.scene_config import HapticScene, Hardware
+from pliant.studies.haptic.steps_config import FootImpedance, HapticPlannerConfig, OnlineChanges, Step
 from pliant.wiring.recipes import HapticConfig as HapticRecipe
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
@@ -70,7 +70,7 @@ class Check(Config):
     target: float | None = Field(default=None, description="bound of the metric")
 
 
-class HapticConfig(CaseConfig):
+class HapticCaseConfig(CaseConfig):
     """One run of the leg."""
 
     controller: str = Field(
@@ -84,10 +84,10 @@ class HapticConfig(CaseConfig):
     duration: float = Field(default=7.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     period: float = quantity(1e-3, "s", "control period", gt=0.0)
     physics_step: float = quantity(2e-5, "s", "", gt=0.0)
-    environment: Environment = Environment()
-    impedance: Impedance = Impedance()
+    environment: HapticScene = HapticScene()
+    impedance: FootImpedance = FootImpedance()
     exploration: ExplorationConfig = ExplorationConfig()
-    planner: Planner = Planner()
+    planner: HapticPlannerConfig = HapticPlannerConfig()
     hardware: Hardware = Hardware()
     control: dict[str, Any] = Field(
         default={}, description="changes to the controller's parameters beside `impedance` and `exploration`"

@@ -12,8 +12,8 @@ from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
-from pliant.studies.haptic.config import HapticConfig
-from pliant.studies.haptic.measure import Signals
+from pliant.studies.haptic.config import HapticCaseConfig
+from pliant.studies.haptic.measure import HapticSignals
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
 from pliant.telemetry.plots.pictures import picture_row
@@ -26,7 +26,7 @@ _METRES_PER_NEWTON = 0.0025
 _CAMERA = Camera(look_at=(0.10, 0.0, 0.25), distance=1.15, azimuth=118.0, elevation=-12.0)
 
 
-def run_figures(config: HapticConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+def run_figures(config: HapticCaseConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
     """Forces, positions and commands over time ([HapFIC] Figs. 5 to 8), and the scene at its salient moments."""
     stem = file_stem(config)
     files = [save(history(config, log), folder / f"{stem}_history.png")]
@@ -34,9 +34,9 @@ def run_figures(config: HapticConfig, experiment: Experiment, log: Log, folder: 
     return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
 
 
-def history(config: HapticConfig, log: Log) -> Figure:
+def history(config: HapticCaseConfig, log: Log) -> Figure:
     """Force, position and command of every axis, and the offset of the exploration."""
-    signals = Signals.of(config, log)
+    signals = HapticSignals.of(config, log)
     time, offset = signals.time, signals.explored("offset")
     panels = [_forces(signals, axis) for axis in _shown(signals)]
     for axis in range(3):
@@ -54,19 +54,19 @@ def history(config: HapticConfig, log: Log) -> Figure:
     return time_series(panels, title(config), log.phases())
 
 
-def title(config: HapticConfig) -> str:
+def title(config: HapticCaseConfig) -> str:
     """For people."""
     return " · ".join(part for part in (config.case, config.controller, config.variant) if part)
 
 
-def _shown(signals: Signals) -> list[int]:
+def _shown(signals: HapticSignals) -> list[int]:
     """Axes along which a force was wanted or felt."""
     felt = np.max(np.abs(signals.force), axis=0) > 0.5
     wanted = np.any(signals.wanted != 0.0, axis=0)
     return [axis for axis in range(3) if felt[axis] or wanted[axis]] or [2]
 
 
-def _forces(signals: Signals, axis: int) -> Panel:
+def _forces(signals: HapticSignals, axis: int) -> Panel:
     curves = [
         Curve("desired", signals.time, signals.wanted[:, axis], "reference"),
         Curve("true", signals.time, signals.force[:, axis]),
@@ -74,14 +74,14 @@ def _forces(signals: Signals, axis: int) -> Panel:
     return Panel(f"force {'xyz'[axis]}, N", curves, least_height=2.0)
 
 
-def moments(config: HapticConfig, experiment: Experiment, log: Log) -> Figure | None:
+def moments(config: HapticCaseConfig, experiment: Experiment, log: Log) -> Figure | None:
     """The leg at its salient moments, with the foot's trace and the contact force ([HapFIC] Fig. 4)."""
     plant = experiment.plant
     if isinstance(plant, ImperfectPlant):
         plant = plant.inner
     if not isinstance(plant, MujocoPlant) or not config.snapshots:
         return None
-    signals = Signals.of(config, log)
+    signals = HapticSignals.of(config, log)
     indices = np.minimum(np.searchsorted(signals.time, config.snapshots), len(signals.time) - 1)
     shots = [_snapshot(signals, plant, int(index)) for index in indices]
     pictures = render(plant.model, shots, _CAMERA, width=520, height=560)
@@ -92,7 +92,7 @@ def moments(config: HapticConfig, experiment: Experiment, log: Log) -> Figure | 
     return picture_row(pictures, titles, heading, 2.1, 2.7)
 
 
-def _snapshot(signals: Signals, plant: MujocoPlant, index: int) -> Snapshot:
+def _snapshot(signals: HapticSignals, plant: MujocoPlant, index: int) -> Snapshot:
     qpos = np.zeros(plant.model.nq)
     qpos[: plant.robot.n] = signals.log["truth/q"][index]
     for name in (body for body in ("box", "ball") if f"truth/objects/{body}/pose" in signals.log):

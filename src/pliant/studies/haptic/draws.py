@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.config import HapticCaseConfig
 from pliant.studies.haptic.safety import profile_along, reachable_force
 from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
-from pliant.studies.haptic.scene_config import Environment, Floor, Hardware, Material
+from pliant.studies.haptic.scene_config import Floor, HapticScene, Hardware, Material
 from pliant.studies.haptic.steps_config import OnlineChanges, Step
 
 _DEPTH = 0.003  # m of the target below where the foot touches
 
 
-def drawn(config: HapticConfig) -> HapticConfig:
+def drawn(config: HapticCaseConfig) -> HapticCaseConfig:
     """The configuration with every random choice made. The same seed gives the same one."""
     scene, changes = (np.random.default_rng(seed) for seed in np.random.SeedSequence(config.seed).spawn(2))
     update: dict[str, Any] = {}
@@ -26,7 +26,7 @@ def drawn(config: HapticConfig) -> HapticConfig:
     return config.model_copy(update=update) if update else config
 
 
-def _scene(config: HapticConfig, rng: np.random.Generator) -> dict[str, Any]:
+def _scene(config: HapticCaseConfig, rng: np.random.Generator) -> dict[str, Any]:
     """Stiffness 3e2 to 1e6 N/m, friction 0 to 1, tilt to ±20°, masses ±50 %, and a force that such a surface bears."""
     stiffness = float(np.exp(rng.uniform(np.log(3e2), np.log(1e6))))
     friction = float(rng.uniform(0.0, 1.0))
@@ -47,7 +47,7 @@ def _scene(config: HapticConfig, rng: np.random.Generator) -> dict[str, Any]:
     first = config.steps[0].model_copy(update={"target": target, "force": (0.0, 0.0, force)})
     steps = (first, *config.steps[1:])
     hardware: Hardware = config.hardware.model_copy(update={"mass_scale": masses})
-    return {"environment": Environment(floor=floor), "hardware": hardware, "steps": steps, "random": False}
+    return {"environment": HapticScene(floor=floor), "hardware": hardware, "steps": steps, "random": False}
 
 
 def _changes(online: OnlineChanges, rng: np.random.Generator) -> tuple[Step, ...]:

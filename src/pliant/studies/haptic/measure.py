@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError
 from pliant.spatial import Array
-from pliant.studies.haptic.config import JUDGED, TASK, Check, HapticConfig
+from pliant.studies.haptic.config import JUDGED, TASK, Check, HapticCaseConfig
 from pliant.studies.haptic.scene import BOX
 from pliant.telemetry import contact_metrics, metrics
 from pliant.telemetry.log import Log
@@ -22,10 +22,10 @@ LOWER_BOUNDS = ("unreachable",)
 
 
 @dataclass(frozen=True)
-class Signals:
+class HapticSignals:
     """The signals that checks look at, sampled at one set of times."""
 
-    config: HapticConfig
+    config: HapticCaseConfig
     log: Log
     time: Array
     """(n,) s"""
@@ -37,9 +37,9 @@ class Signals:
     """(n, 3) of the impedance, exploration included, m"""
 
     @staticmethod
-    def of(config: HapticConfig, log: Log) -> Signals:
+    def of(config: HapticCaseConfig, log: Log) -> HapticSignals:
         frame = config.frame
-        return Signals(
+        return HapticSignals(
             config,
             log,
             log.time("measurement/q"),
@@ -73,13 +73,13 @@ class Signals:
 Window = npt.NDArray[np.bool_]
 
 
-def measure(config: HapticConfig, log: Log) -> tuple[Metric, ...]:
+def measure(config: HapticCaseConfig, log: Log) -> tuple[Metric, ...]:
     """One metric per check. Targets are pliant's: baselines have none."""
-    signals = Signals.of(config, log)
+    signals = HapticSignals.of(config, log)
     return tuple(_metric(check, signals, config.controller == JUDGED) for check in config.checks)
 
 
-def _metric(check: Check, signals: Signals, judged: bool) -> Metric:
+def _metric(check: Check, signals: HapticSignals, judged: bool) -> Metric:
     window = metrics.between(signals.time, check.begin, np.inf if check.end is None else check.end)
     unit, function = _KINDS[check.kind]
     value = function(check, signals, window) if window.any() else math.nan  # the run ended before
@@ -88,63 +88,63 @@ def _metric(check: Check, signals: Signals, judged: bool) -> Metric:
     return Metric(check.name, float(value), unit, target=target, at_least=check.kind in LOWER_BOUNDS)
 
 
-def _error(check: Check, signals: Signals, window: Window) -> Array:
+def _error(check: Check, signals: HapticSignals, window: Window) -> Array:
     """(n,) force error along the check's axis, N."""
     wanted = signals.wanted[window, check.axis] if check.wanted is None else check.wanted
     error = signals.force[window, check.axis] - wanted
     return error / np.abs(wanted) if check.relative else error
 
 
-def _rms(check: Check, signals: Signals, window: Window) -> float:
+def _rms(check: Check, signals: HapticSignals, window: Window) -> float:
     return float(np.sqrt(np.mean(_error(check, signals, window) ** 2)))
 
 
-def _max(check: Check, signals: Signals, window: Window) -> float:
+def _max(check: Check, signals: HapticSignals, window: Window) -> float:
     return float(np.max(np.abs(_error(check, signals, window))))
 
 
-def _settle(check: Check, signals: Signals, window: Window) -> float:
+def _settle(check: Check, signals: HapticSignals, window: Window) -> float:
     time, force = signals.time[window], signals.force[window, check.axis]
     before = float(force[0]) if check.before is None else check.before
     return contact_metrics.settling_time(time, force, _wanted(check), before, check.begin)
 
 
-def _breaks(check: Check, signals: Signals, window: Window) -> float:
+def _breaks(check: Check, signals: HapticSignals, window: Window) -> float:
     return contact_metrics.contact_breaks(np.copysign(1.0, _wanted(check)) * signals.force[window, check.axis])
 
 
-def _peak(check: Check, signals: Signals, window: Window) -> float:
+def _peak(check: Check, signals: HapticSignals, window: Window) -> float:
     return metrics.peak(np.linalg.norm(signals.force[window], axis=1))
 
 
-def _lateral(check: Check, signals: Signals, window: Window) -> float:
+def _lateral(check: Check, signals: HapticSignals, window: Window) -> float:
     across = [axis for axis in range(3) if axis != check.axis]
     return 1e3 * metrics.max_error(signals.position[window][:, across], signals.reference[window][:, across])
 
 
-def _return(check: Check, signals: Signals, window: Window) -> float:
+def _return(check: Check, signals: HapticSignals, window: Window) -> float:
     return 1e3 * metrics.max_error(signals.position[window], signals.reference[window])
 
 
-def _offset(check: Check, signals: Signals, window: Window) -> float:
+def _offset(check: Check, signals: HapticSignals, window: Window) -> float:
     return 1e3 * metrics.peak(signals.explored("offset")[window])
 
 
-def _off_bound(check: Check, signals: Signals, window: Window) -> float:
+def _off_bound(check: Check, signals: HapticSignals, window: Window) -> float:
     offset = np.abs(signals.explored("offset")[window, check.axis])
     return 1e3 * float(np.max(np.abs(offset - signals.config.impedance.range[check.axis])))
 
 
-def _beyond_bound(check: Check, signals: Signals, window: Window) -> float:
+def _beyond_bound(check: Check, signals: HapticSignals, window: Window) -> float:
     bound = signals.channel(f"reference/{signals.config.frame}/range", (3,))
     return 1e3 * float(np.max(np.abs(signals.explored("offset")) - bound))
 
 
-def _unreachable(check: Check, signals: Signals, window: Window) -> float:
+def _unreachable(check: Check, signals: HapticSignals, window: Window) -> float:
     return float(np.mean(signals.explored("unreachable")[window, check.axis]))
 
 
-def _tilt(check: Check, signals: Signals, window: Window) -> float:
+def _tilt(check: Check, signals: HapticSignals, window: Window) -> float:
     """Degrees between what the box has turned by about the horizontal, at the end, and 90°."""
     _, _, _, w, x, y, z = signals.log[f"truth/objects/{BOX}/pose"][-1]
     up = 1.0 - 2.0 * (x * x + y * y)  # world z of the box's z axis, of a unit quaternion
@@ -152,27 +152,27 @@ def _tilt(check: Check, signals: Signals, window: Window) -> float:
     return abs(float(np.degrees(np.arccos(np.clip(up, -1.0, 1.0)))) - 90.0)
 
 
-def _speed(check: Check, signals: Signals, window: Window) -> float:
+def _speed(check: Check, signals: HapticSignals, window: Window) -> float:
     return metrics.peak(signals.speed()[window])
 
 
-def _over(check: Check, signals: Signals, window: Window) -> float:
+def _over(check: Check, signals: HapticSignals, window: Window) -> float:
     """How far the force exceeds the desired one along the check's axis, N."""
     wanted = signals.wanted[window, check.axis]
     side = np.where(wanted < 0.0, -1.0, 1.0)
     return float(np.max(side * (signals.force[window, check.axis] - wanted)))
 
 
-def _link(check: Check, signals: Signals, window: Window) -> float:
+def _link(check: Check, signals: HapticSignals, window: Window) -> float:
     return metrics.peak(np.linalg.norm(signals.log["truth/shank/wrench"][window, :3], axis=1))
 
 
-def _knee(check: Check, signals: Signals, window: Window) -> float:
+def _knee(check: Check, signals: HapticSignals, window: Window) -> float:
     """Smallest angle of the last joint: 0 is the straight leg, where the Jacobian loses a rank."""
     return float(np.degrees(np.min(np.abs(signals.log["truth/q"][window, -1]))))
 
 
-def _reachable(check: Check, signals: Signals, window: Window) -> float:
+def _reachable(check: Check, signals: HapticSignals, window: Window) -> float:
     return metrics.peak(signals.explored("reachable")[window, check.axis] - _wanted(check))
 
 
@@ -182,7 +182,7 @@ def _wanted(check: Check) -> float:
     return check.wanted
 
 
-def _share(check: Check, signals: Signals, window: Window) -> float:
+def _share(check: Check, signals: HapticSignals, window: Window) -> float:
     if f"{TASK}/force" not in signals.log:
         return math.nan  # a controller without an impedance at the foot
     force = np.abs(signals.channel(f"{TASK}/force", (3,)))
@@ -190,7 +190,7 @@ def _share(check: Check, signals: Signals, window: Window) -> float:
     return float(np.max((force / bound)[window]))
 
 
-_KINDS: Mapping[str, tuple[str, Callable[[Check, Signals, Window], float]]] = {
+_KINDS: Mapping[str, tuple[str, Callable[[Check, HapticSignals, Window], float]]] = {
     "rms": ("N", _rms),
     "max": ("N", _max),
     "settle": ("s", _settle),

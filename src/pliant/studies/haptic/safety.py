@@ -12,7 +12,7 @@ from pliant.references.planners.workspace import Workspace, workspace_of
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
-from pliant.studies.haptic.config import FAMILY, HapticConfig
+from pliant.studies.haptic.config import FAMILY, HapticCaseConfig
 from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
 from pliant.studies.haptic.script import Wish, wishes
 
@@ -20,7 +20,7 @@ _SAFE_GAIN = 0.5
 """k_I over the actuators' bandwidth in rad/s: no limit cycle, neither on a rigid floor nor on a soft ball"""
 
 
-def warnings_of(config: HapticConfig, robot: Robot) -> tuple[str, ...]:
+def warnings_of(config: HapticCaseConfig, robot: Robot) -> tuple[str, ...]:
     """Sentences, each with the value that would be safe; none if all is well."""
     found: list[str] = []
     found += _gains(config, robot)
@@ -34,7 +34,7 @@ def warnings_of(config: HapticConfig, robot: Robot) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def _gains(config: HapticConfig, robot: Robot) -> list[str]:
+def _gains(config: HapticCaseConfig, robot: Robot) -> list[str]:
     """ω T_s, the actuators' bandwidth and the leak at the knee, at the start and at every tuning of the steps."""
     bandwidth = config.hardware.bandwidth
     q = robot.home if config.start is None else np.array(config.start)
@@ -62,7 +62,7 @@ def _inertia(robot: Robot, frame: str, q: Array) -> Array:
     return smallest_inertia(robot, frame, q)[:3]
 
 
-def _exploration_gain(config: HapticConfig) -> list[str]:
+def _exploration_gain(config: HapticCaseConfig) -> list[str]:
     entry = config.entry
     adaptive = entry.family == FAMILY and "exploration" not in entry.fixed  # one that is fixed is printed, or none
     if config.hardware.bandwidth is None or not adaptive:
@@ -98,7 +98,7 @@ def _distance(wish: Wish, workspace: Workspace) -> list[str]:
     ]
 
 
-def _offsets(wish: Wish, config: HapticConfig) -> list[str]:
+def _offsets(wish: Wish, config: HapticCaseConfig) -> list[str]:
     """Forces along z that the bound x_b of the offset does not allow on what lies below the target."""
     below = _surface_below(wish.target, config)
     F_d, F_max = wish.force[2], float(wish.tuning.force_max[2])
@@ -116,7 +116,7 @@ def _offsets(wish: Wish, config: HapticConfig) -> list[str]:
     ]
 
 
-def _surface_below(target: tuple[float, float, float], config: HapticConfig) -> tuple[float, float] | None:
+def _surface_below(target: tuple[float, float, float], config: HapticCaseConfig) -> tuple[float, float] | None:
     """Depth of a target below where the foot would touch, m, and stiffness of what is there, N/m, where it is known."""
     x, y, z = target
     box, ball, floor = config.environment.box, config.environment.ball, config.environment.floor
@@ -128,7 +128,7 @@ def _surface_below(target: tuple[float, float, float], config: HapticConfig) -> 
     return (depth, floor.material.stiffness) if depth > 0.0 else None
 
 
-def profile_along(axis: int, tuning: ImpedanceTuning, config: HapticConfig) -> ForceProfile:
+def profile_along(axis: int, tuning: ImpedanceTuning, config: HapticCaseConfig) -> ForceProfile:
     """The profile of one axis of the foot's impedance."""
     one = slice(axis, axis + 1)
     bend = None if tuning.linear_range is None else tuning.linear_range[one]

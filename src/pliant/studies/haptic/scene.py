@@ -7,13 +7,13 @@ import numpy as np
 from pliant.simulation import Ball, Box, Plane, Scene, Surface
 from pliant.simulation.scene import Thing
 from pliant.spatial import rpy
-from pliant.studies.haptic.scene_config import Environment, Floor, Material
+from pliant.studies.haptic.scene_config import Floor, HapticScene, Material
 
 FOOT_RADIUS = 0.02  # m, of the catalogue's leg
 FLOOR, BOX, BALL = "floor", "box", "ball"
 
 
-def scene_of(environment: Environment) -> Scene:
+def scene_of(environment: HapticScene) -> Scene:
     """The scene, ruled by the explicit contact law."""
     things: list[Thing] = []
     if environment.floor is not None:

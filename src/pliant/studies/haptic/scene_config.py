@@ -52,7 +52,7 @@ class BallConfig(Config):
     material: Material = SOFT
 
 
-class Environment(Config):
+class HapticScene(Config):
     """What stands around the leg; contacts follow the explicit law with stiction."""
 
     floor: Floor | None = Floor()

@@ -9,7 +9,7 @@ import numpy as np
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.schedule import Schedule
 from pliant.signals import ImpedanceTuning, Reference, TaskReference
-from pliant.studies.haptic.config import HapticConfig
+from pliant.studies.haptic.config import HapticCaseConfig
 from pliant.studies.haptic.steps_config import Step
 
 
@@ -42,7 +42,7 @@ class Wish:
         return Reference(0.0, (task,), phase=self.name, tuning=self.exploration)
 
 
-def wishes(config: HapticConfig, exploration: ExplorationConfig) -> list[tuple[float, Wish]]:
+def wishes(config: HapticCaseConfig, exploration: ExplorationConfig) -> list[tuple[float, Wish]]:
     """The user's wishes from each step on, with the time in s."""
     first = config.steps[0]
     assert first.target is not None
@@ -54,6 +54,6 @@ def wishes(config: HapticConfig, exploration: ExplorationConfig) -> list[tuple[f
     return found
 
 
-def schedule(config: HapticConfig, exploration: ExplorationConfig) -> Schedule:
+def schedule(config: HapticCaseConfig, exploration: ExplorationConfig) -> Schedule:
     """The references that the planner starts from."""
     return Schedule([(time, wish.reference(config.frame)) for time, wish in wishes(config, exploration)])

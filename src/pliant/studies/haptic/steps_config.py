@@ -15,7 +15,7 @@ from pliant.signals import ImpedanceTuning
 from pliant.studies.haptic.fields import Triple, Vector, quantity
 
 
-class Impedance(Config):
+class FootImpedance(Config):
     """The fractal impedance at the foot; x, y, z. Defaults: [HapFIC] sec. III."""
 
     stiffness: Triple = quantity((6000.0, 6000.0, 12000.0), "N/m", "K_0: force per error near the target")
@@ -39,7 +39,7 @@ class Impedance(Config):
         return self
 
 
-class Planner(Config):
+class HapticPlannerConfig(Config):
     """How targets that jump become motion."""
 
     kind: Literal["superposition", "attractor"] = Field(

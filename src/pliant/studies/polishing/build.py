@@ -20,7 +20,7 @@ from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.studies.polishing.source import TURNED_DOWN, polishing_source, touching_point
-from pliant.studies.polishing.work_config import Pushes
+from pliant.studies.polishing.work_config import RepeatedPushes
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -67,7 +67,7 @@ def plant_of(config: PolishingConfig, robot: Robot) -> Plant[Any]:
     return ImperfectPlant(physics, config.imperfections, seed=config.seed, period=config.period, holding_torque=holding)
 
 
-def _pushes(pushes: Pushes, config: PolishingConfig) -> tuple[Push, ...]:
+def _pushes(pushes: RepeatedPushes, config: PolishingConfig) -> tuple[Push, ...]:
     """Horizontal pushes in random directions until the end of the run."""
     rng = generator(config.seed, "pushes")
     found: list[Push] = []

@@ -22,7 +22,7 @@ from pliant.studies.polishing.rows import (
     imperfect,
     tilted,
 )
-from pliant.studies.polishing.work_config import Pushes
+from pliant.studies.polishing.work_config import RepeatedPushes
 
 _HEADINGS = {
     "E_P": "E_P, mm",
@@ -157,5 +157,5 @@ TABLE_CASES: tuple[Case[PolishingConfig], ...] = (
         table=_TILTED,
         task=_FAST,
     ),
-    _robot_like("fast-pushed", "Fast circle under pushes", {}, 9, task=_FAST, pushes=Pushes().model_dump()),
+    _robot_like("fast-pushed", "Fast circle under pushes", {}, 9, task=_FAST, pushes=RepeatedPushes().model_dump()),
 )

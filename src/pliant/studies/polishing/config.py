@@ -19,7 +19,7 @@ from pliant.mpc.presets import PRESETS
 from pliant.robot import Robot, Tool
 from pliant.robots.rotors import RotorInertia
 from pliant.simulation import Imperfections
-from pliant.studies.polishing.work_config import Pushes, Table, Task
+from pliant.studies.polishing.work_config import RepeatedPushes, Table, Work
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
 
@@ -58,7 +58,7 @@ class PolishingConfig(CaseConfig):
     period: float = Field(default=1e-3, gt=0.0, description="control period", json_schema_extra={"unit": "s"})
     physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
     table: Table = Table()
-    task: Task = Task()
+    task: Work = Work()
     imperfections: Imperfections = Field(default=Imperfections(), description="of sensors, drives and computation")
     unknown_mass: float = Field(
         default=0.0,
@@ -88,7 +88,7 @@ class PolishingConfig(CaseConfig):
         description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         json_schema_extra={"unit": "1"},
     )
-    pushes: Pushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
+    pushes: RepeatedPushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
     preset: Literal["tuned", "perfect", "paper"] = Field(
         default="tuned",
         description="what `control` starts from: weights tuned for the imperfect robot, for a perfect one, or the"

@@ -39,7 +39,7 @@ class Table(Config):
     )
 
 
-class Task(Config):
+class Work(Config):
     """What the tool does. Times count from the start of the run."""
 
     start: float = Field(
@@ -105,7 +105,7 @@ class Task(Config):
     found: bool = Field(default=False, description="contact begins when it is felt, not by the timetable")
 
 
-class Pushes(Config):
+class RepeatedPushes(Config):
     """Pushes by a person: a constant force in a random horizontal direction on another frame, again and again."""
 
     frame: str = Field(default="flange", description="that is pushed")

@@ -20,7 +20,7 @@ from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Push, Scene, Surface, random_pushes, wall
 from pliant.simulation.seeding import generator
-from pliant.studies.stack.config import Path, StackConfig
+from pliant.studies.stack.config import StackCaseConfig, StackPath
 from pliant.studies.stack.placement import Placement, placed
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
@@ -28,7 +28,7 @@ from pliant.wiring.wire import Offer, wired
 TOUCH_RADIUS = 0.01  # m of the sphere with which the tool touches the wall
 
 
-def build(config: StackConfig) -> Experiment:
+def build(config: StackCaseConfig) -> Experiment:
     """Robot, plant, estimator, references and controller of one run.
 
     Raises:
@@ -68,16 +68,16 @@ def _foreseen(source: PostureSource, lookahead: Lookahead | None) -> ReferenceSo
     return source if lookahead is None else Foreseen(source, lookahead)
 
 
-def _changed(source: ReferenceSource[Any], config: StackConfig, rng: np.random.Generator) -> ReferenceSource[Any]:
+def _changed(source: ReferenceSource[Any], config: StackCaseConfig, rng: np.random.Generator) -> ReferenceSource[Any]:
     return source if config.retuning is None else Retuned(source, _schedule(config, rng))
 
 
-def place_of(config: StackConfig) -> Placement:
+def place_of(config: StackCaseConfig) -> Placement:
     """Where the path of a run lies. Raises UnreachableError where the robot can follow it nowhere."""
     return _placed(config)[0]
 
 
-def _placed(config: StackConfig) -> tuple[Placement, PostureSource]:
+def _placed(config: StackCaseConfig) -> tuple[Placement, PostureSource]:
     """Found once for all runs of the same robot and path: the inverse kinematics takes seconds."""
     locked = None if config.locked is None else tuple(sorted(config.locked.items()))
     return _found(config.robot, locked, config.path.model_dump_json(), config.frames(), config.duration)
@@ -88,10 +88,10 @@ def _found(
     robot: str, locked: tuple[tuple[str, float], ...] | None, path: str, frames: tuple[str, str], duration: float
 ) -> tuple[Placement, PostureSource]:
     arm = Robot.load(robot, locked=None if locked is None else dict(locked))
-    return placed(arm, Path.model_validate_json(path), frames, duration)
+    return placed(arm, StackPath.model_validate_json(path), frames, duration)
 
 
-def _scene(config: StackConfig, place: Placement) -> Scene:
+def _scene(config: StackCaseConfig, place: Placement) -> Scene:
     if config.wall is None:
         return Scene()
     surface = Surface(config.wall.stiffness, config.wall.damping, config.wall.friction)
@@ -101,7 +101,7 @@ def _scene(config: StackConfig, place: Placement) -> Scene:
     return Scene((wall((x, y, z), (nx, ny, nz), surface=surface),))
 
 
-def _pushes(config: StackConfig, rng: np.random.Generator) -> tuple[Push, ...]:
+def _pushes(config: StackCaseConfig, rng: np.random.Generator) -> tuple[Push, ...]:
     if config.pushes is None:
         return ()
     return random_pushes(
@@ -115,7 +115,7 @@ def _pushes(config: StackConfig, rng: np.random.Generator) -> tuple[Push, ...]:
     )
 
 
-def _schedule(config: StackConfig, rng: np.random.Generator) -> list[TuningChange]:
+def _schedule(config: StackCaseConfig, rng: np.random.Generator) -> list[TuningChange]:
     """Random factors on stiffness and force of each axis, a few times a second."""
     tunings = config.parameters().impedances()
     if config.retuning is None or not tunings:

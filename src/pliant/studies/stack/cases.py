@@ -7,7 +7,7 @@ from typing import Any
 
 from pliant.experiments.case import Case, Pair, Row, once, seeded
 from pliant.studies.stack.balance import balance_figure
-from pliant.studies.stack.config import Joints, Path, Pushes, Retuning, StackConfig, Wall
+from pliant.studies.stack.config import GainChanges, Joints, RandomPushes, StackCaseConfig, StackPath, Wall
 
 JUDGED = "stack"
 """the controller that the targets are for"""
@@ -23,7 +23,7 @@ _TABLE_1 = {"stiff": "table-1-simulation", "soft": "table-1-robot"}
 """a case's preset → that of the paper's Table I"""
 
 
-def _rows(config: StackConfig) -> list[Row]:
+def _rows(config: StackCaseConfig) -> list[Row]:
     """The stack, it with Table I's parameters, and the baselines, all on the first seed but the stack itself."""
     printed = {"preset": _TABLE_1[config.preset]}
     return [
@@ -40,12 +40,12 @@ def _xyz(x: float, y: float, z: float) -> dict[str, float]:
 
 
 def _case(
-    config: StackConfig,
+    config: StackCaseConfig,
     paper: Mapping[str, float] | None = None,
     targets: Mapping[str, float] | None = None,
     rows: Sequence[Row] | None = None,
     **more: Any,
-) -> Case[StackConfig]:
+) -> Case[StackCaseConfig]:
     rows = _rows(config) if rows is None else rows
     return Case(config, rows, judged=JUDGED, paper=paper or {}, targets=_PASSIVE | dict(targets or {}), **more)
 
@@ -55,7 +55,7 @@ def _no_wall(controller: str | None) -> Row:
     return Row("no wall", controller, {"wall": None})
 
 
-def _wrong_masses(config: StackConfig) -> list[Row]:
+def _wrong_masses(config: StackCaseConfig) -> list[Row]:
     """The rows of a case, and the baseline that knows the masses with each of them off by up to 20 %."""
     wrong = Row("masses ± 20 %", "operational-space", {"model_mass_error": 0.2}, draws=seeded(10), shown=False)
     return [*_rows(config), wrong]
@@ -68,10 +68,10 @@ def _elbow(force: float) -> Row:
     return Row(f"elbow-{force:g}N", changes=changes, value=force)
 
 
-_WALL = StackConfig(case="figure8-wall", wall=Wall(), joints=_GAZEBO)
-_FRICTION = StackConfig(case="figure8-gazebo", joints=_GAZEBO)
-_LATE = StackConfig(case="figure8-hardware", **_HARDWARE_LOOP)
-_RESTING = Pushes(frame="flange", gap=(0.5, 0.6))
+_WALL = StackCaseConfig(case="figure8-wall", wall=Wall(), joints=_GAZEBO)
+_FRICTION = StackCaseConfig(case="figure8-gazebo", joints=_GAZEBO)
+_LATE = StackCaseConfig(case="figure8-hardware", **_HARDWARE_LOOP)
+_RESTING = RandomPushes(frame="flange", gap=(0.5, 0.6))
 
 # The paper's numbers: [Stack] sec. IV, mm; those of hardware, pushed and line were measured on its robot.
 _ALL = (
@@ -88,46 +88,46 @@ _ALL = (
         ],
     ),
     _case(
-        StackConfig(case="figure8-plain"),
+        StackCaseConfig(case="figure8-plain"),
         _xyz(5.6, 4.6, 6.1),
         _xyz(1.0, 1.2, 3.5) | {"torque variation": 100.0},
     ),
     _case(_FRICTION, _xyz(5.6, 4.6, 6.1), _xyz(4.0, 2.5, 3.5), _wrong_masses(_FRICTION)),
     _case(_LATE, _xyz(7.6, 1.5, 8.6), _xyz(3.5, 2.5, 2.5), _wrong_masses(_LATE)),
     _case(
-        StackConfig(case="figure8-pushed", **_HARDWARE_LOOP, pushes=Pushes()),
+        StackCaseConfig(case="figure8-pushed", **_HARDWARE_LOOP, pushes=RandomPushes()),
         _xyz(20.3, 7.9, 9.1),
         _xyz(5.0, 6.0, 5.5),
     ),
     _case(
-        StackConfig(case="line-hardware", path=Path(kind="line"), **_HARDWARE_LOOP),
+        StackCaseConfig(case="line-hardware", path=StackPath(kind="line"), **_HARDWARE_LOOP),
         _xyz(6.1, 4.6, 6.7),
         _xyz(6.0, 3.0, 4.0),
     ),
     _case(
-        StackConfig(case="line-pushed", path=Path(kind="line"), pushes=Pushes(), **_HARDWARE_LOOP),
+        StackCaseConfig(case="line-pushed", path=StackPath(kind="line"), pushes=RandomPushes(), **_HARDWARE_LOOP),
         _xyz(9.6, 7.7, 7.3),
         _xyz(8.0, 7.5, 5.5),
     ),
-    _case(StackConfig(case="line-slow", path=Path(kind="line", peak_speed=0.4), **_HARDWARE_LOOP)),
+    _case(StackCaseConfig(case="line-slow", path=StackPath(kind="line", peak_speed=0.4), **_HARDWARE_LOOP)),
     _case(
-        StackConfig(case="rest-plain", path=Path(kind="hold"), pushes=_RESTING, duration=10.0),
+        StackCaseConfig(case="rest-plain", path=StackPath(kind="hold"), pushes=_RESTING, duration=10.0),
         targets={"joint speed at the end": 0.01},
     ),
     _case(
-        StackConfig(case="singular", path=Path(kind="stretch"), **_HARDWARE_LOOP),
+        StackCaseConfig(case="singular", path=StackPath(kind="stretch"), **_HARDWARE_LOOP),
         targets={"torque step": 15.0},
     ),
     _case(
-        StackConfig(case="calibration", retuning=Retuning(), joints=_GAZEBO),
+        StackCaseConfig(case="calibration", retuning=GainChanges(), joints=_GAZEBO),
         targets={"|h| over F_max": 1.0},
         rows=[Row(draws=_PUSHED)],
     ),
     _case(
-        StackConfig(case="balance", joints=_GAZEBO),
+        StackCaseConfig(case="balance", joints=_GAZEBO),
         rows=[_elbow(force) for force in _BALANCE_FORCES],
         figures=[balance_figure],
     ),
 )
-CASES: Mapping[str, Case[StackConfig]] = {case.config.case: case for case in _ALL}
+CASES: Mapping[str, Case[StackCaseConfig]] = {case.config.case: case for case in _ALL}
 """by name; the first is what `pliant run` does"""

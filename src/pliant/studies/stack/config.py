@@ -32,7 +32,7 @@ Span = Annotated[tuple[_Time, _Time], AfterValidator(in_order)]
 """s, least and most"""
 
 
-class Path(Config):
+class StackPath(Config):
     """What the tool does. It starts from rest within `ramp`."""
 
     kind: PathKind = Field(
@@ -85,7 +85,7 @@ class Wall(Config):
     friction: float = Field(default=0.1, ge=0.0, le=10.0, json_schema_extra={"unit": "1"})
 
 
-class Pushes(Config):
+class RandomPushes(Config):
     """Random pushes on a frame, one after the other."""
 
     frame: str = Field(default="elbow")
@@ -96,7 +96,7 @@ class Pushes(Config):
     gap: Span = Field(default=(0.1, 0.4), json_schema_extra={"unit": "s"})
 
 
-class Retuning(Config):
+class GainChanges(Config):
     """Random changes of every gain and force bound while the robot moves."""
 
     rate: float = Field(default=4.0, gt=0.0, le=1e3, description="changes per second", json_schema_extra={"unit": "Hz"})
@@ -120,7 +120,7 @@ PRESETS: Mapping[str, Mapping[str, ControllerConfig]] = {
 the hardware-like robot. Other families start from what suits the task"""
 
 
-class StackConfig(CaseConfig):
+class StackCaseConfig(CaseConfig):
     """One run of the stack of passive task-space controllers."""
 
     controller: str = Field(default="stack", description="name of the controller; see `pliant list controllers`")
@@ -133,7 +133,7 @@ class StackConfig(CaseConfig):
         json_schema_extra={"unit": "s"},
     )
     physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
-    path: Path = Path()
+    path: StackPath = StackPath()
     joints: Joints = Joints()
     preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(
         default="stiff", description="parameters of the stack that `control` starts from"
@@ -158,8 +158,8 @@ class StackConfig(CaseConfig):
         json_schema_extra={"unit": "1"},
     )
     wall: Wall | None = None
-    pushes: Pushes | None = None
-    retuning: Retuning | None = None
+    pushes: RandomPushes | None = None
+    retuning: GainChanges | None = None
 
     @property
     def clock(self) -> Mapping[str, float]:

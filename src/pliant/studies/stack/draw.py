@@ -16,7 +16,7 @@ from pliant.signals import ImpedanceTuning
 from pliant.simulation import MujocoPlant
 from pliant.simulation.snapshot import Camera, Path3, Snapshot, render
 from pliant.spatial import Array
-from pliant.studies.stack.config import StackConfig
+from pliant.studies.stack.config import StackCaseConfig
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import (
     Path2D,
@@ -38,7 +38,7 @@ _REFERENCE, _ACTUAL = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0)
 _CAMERA = Camera(look_at=(0.0, -0.30, 0.34), distance=1.35, azimuth=28.0, elevation=-12.0)
 
 
-def run_figures(config: StackConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+def run_figures(config: StackCaseConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
     """Posture difference, tool path, torques (the three panels of [Stack] Figs. 5 to 10), energies and the scene."""
     stem, tool = file_stem(config), config.frames()[0]
     time = log.time("measurement/q")
@@ -65,7 +65,7 @@ def run_figures(config: StackConfig, experiment: Experiment, log: Log, folder: P
     return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
 
 
-def _scene(config: StackConfig, experiment: Experiment, log: Log, tool: str) -> Figure | None:
+def _scene(config: StackCaseConfig, experiment: Experiment, log: Log, tool: str) -> Figure | None:
     """The arm at four instants (solid) over its reference posture (pale), with both traces ([Stack] Fig. 4)."""
     if not isinstance(experiment.plant, MujocoPlant):
         return None

@@ -8,13 +8,13 @@ import numpy.typing as npt
 from pliant.robot import Robot
 from pliant.spatial import Array
 from pliant.studies.stack.build import place_of
-from pliant.studies.stack.config import StackConfig
+from pliant.studies.stack.config import StackCaseConfig
 from pliant.telemetry import metrics
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
 
-def measure(config: StackConfig, robot: Robot, log: Log) -> tuple[Metric, ...]:
+def measure(config: StackCaseConfig, robot: Robot, log: Log) -> tuple[Metric, ...]:
     """Metrics from one second after the ramp to the end, on true signals."""
     errors = zip("xyz", tracking_rmse(config, log), strict=True)
     found = [Metric(f"RMSE {axis}", float(error), "mm") for axis, error in errors]
@@ -24,19 +24,19 @@ def measure(config: StackConfig, robot: Robot, log: Log) -> tuple[Metric, ...]:
     return (*found, *_attractor(config, log))
 
 
-def window(config: StackConfig, log: Log) -> npt.NDArray[np.bool_]:
+def window(config: StackCaseConfig, log: Log) -> npt.NDArray[np.bool_]:
     """Mask of the samples that count."""
     return metrics.between(log.time("measurement/q"), config.settled)
 
 
-def tracking_rmse(config: StackConfig, log: Log) -> Array:
+def tracking_rmse(config: StackCaseConfig, log: Log) -> Array:
     """(3,) mm, true tool position against its reference, in the axes of the path: the paper's x, y, z."""
     tool, counts, axes = config.frames()[0], window(config, log), place_of(config).axes
     actual, wanted = (log[f"{kind}/{tool}/position"][counts] @ axes for kind in ("truth", "reference"))
     return 1e3 * metrics.rmse(actual, wanted)
 
 
-def _torques(config: StackConfig, robot: Robot, log: Log) -> list[Metric]:
+def _torques(config: StackCaseConfig, robot: Robot, log: Log) -> list[Metric]:
     counts, torque = window(config, log), log["command/torque"]
     step = 100.0 * metrics.torque_step_fraction(torque, robot.torque_limit)
     variation = metrics.torque_variation(torque[counts], config.period)
@@ -52,7 +52,7 @@ def _rest_speed(log: Log) -> float:
     return metrics.peak(log["truth/v"][last_second])
 
 
-def _attractor(config: StackConfig, log: Log) -> list[Metric]:
+def _attractor(config: StackCaseConfig, log: Log) -> list[Metric]:
     if "ee/storage_margin" not in log:
         return []
     counts = window(config, log)
@@ -66,7 +66,7 @@ def _attractor(config: StackConfig, log: Log) -> list[Metric]:
     return found
 
 
-def largest_share(config: StackConfig, log: Log) -> float:
+def largest_share(config: StackCaseConfig, log: Log) -> float:
     """Largest |h|/F_max over both tasks and all ticks, with the bound in force at each tick."""
     worst = 0.0
     for label, frame in zip(("ee", "elbow"), config.frames(), strict=True):

@@ -23,7 +23,7 @@ from pliant.references.trajectories.trajectory import Hold
 from pliant.robot import Robot
 from pliant.robots.chain import Arm, arm_of
 from pliant.spatial import Array, frame_with_z_along
-from pliant.studies.stack.config import Path
+from pliant.studies.stack.config import StackPath
 
 _REACH = 0.868  # m from the shoulder to the flange of the paper's arm
 _SHOULDER = np.array([0.0, 0.0, 0.31])  # m
@@ -64,7 +64,7 @@ class Placement:
         return self.point(_CENTRE)
 
 
-def placed(robot: Robot, path: Path, frames: tuple[str, str], duration: float) -> tuple[Placement, PostureSource]:
+def placed(robot: Robot, path: StackPath, frames: tuple[str, str], duration: float) -> tuple[Placement, PostureSource]:
     """The path where the robot can follow it, and the posture along it.
 
     Args:
@@ -98,7 +98,7 @@ def placed(robot: Robot, path: Path, frames: tuple[str, str], duration: float) -
     ) from complaint
 
 
-def motion(path: Path, frame: str, place: Placement) -> FrameMotion:
+def motion(path: StackPath, frame: str, place: Placement) -> FrameMotion:
     """What the tool does."""
     across, up, scale = place.axes[:, 0], place.axes[:, 2], place.scale
     if path.kind == "figure8":

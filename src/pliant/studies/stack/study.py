@@ -10,27 +10,27 @@ from pliant.experiments.tuning import Tuning
 from pliant.studies.stack import draw
 from pliant.studies.stack.build import build
 from pliant.studies.stack.cases import CASES
-from pliant.studies.stack.config import StackConfig
+from pliant.studies.stack.config import StackCaseConfig
 from pliant.studies.stack.measure import measure
 from pliant.studies.stack.tuning import tuning_of
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
 
-class StackStudy(Study[StackConfig]):
+class StackStudy(Study[StackCaseConfig]):
     """[Stack] Tiseo et al. 2020: figure-8 and line with a 7-joint arm, free, against a wall, pushed at the elbow."""
 
     name = "stack"
     title = "stack of passive task-space controllers on a 7-joint arm (Tiseo et al. 2020)"
     cases = CASES
 
-    def build(self, config: StackConfig) -> Experiment:
+    def build(self, config: StackCaseConfig) -> Experiment:
         return build(config)
 
-    def metrics(self, config: StackConfig, log: Log) -> tuple[Metric, ...]:
+    def metrics(self, config: StackCaseConfig, log: Log) -> tuple[Metric, ...]:
         return measure(config, config.robot_model(), log)
 
-    def figures(self, config: StackConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
+    def figures(self, config: StackCaseConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, folder)
 
     def tuning(self, controller: str, case: str | None = None) -> Tuning:

@@ -13,7 +13,7 @@ from pliant.errors import ConfigError, options
 from pliant.experiments.base import Result
 from pliant.experiments.config import merged
 from pliant.experiments.tuning import Range, Tuning
-from pliant.studies.stack.config import PRESETS, StackConfig
+from pliant.studies.stack.config import PRESETS, StackCaseConfig
 
 _DURATION = 7.0  # s: one round of the figure-8 after the ramp
 _RMSE = ("RMSE x", "RMSE y", "RMSE z")
@@ -53,7 +53,7 @@ _SEARCHES: Mapping[str, _Search] = {
 }
 
 
-def tuning_of(case: StackConfig, controller: str) -> Tuning:
+def tuning_of(case: StackCaseConfig, controller: str) -> Tuning:
     """The search over a controller's parameters on the plant of a case.
 
     Raises:

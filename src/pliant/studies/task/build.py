@@ -21,7 +21,7 @@ from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
 from pliant.studies.task.sensor import known_load
 from pliant.studies.task.world import plant_of, true_surface
 from pliant.surfaces import SurfaceGeometry
-from pliant.tasks.parts import Truth
+from pliant.tasks.parts import TruthConfig
 from pliant.telemetry.schema import Channel
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
@@ -46,7 +46,7 @@ def planned(case: TaskCase) -> Planned:
     Raises:
         PliantError: a robot or path that there is not, or that the robot cannot follow.
     """
-    of_the_run = {"truth": Truth(), "seed": 0, "controller": "", "control": {}, "variant": ""}
+    of_the_run = {"truth": TruthConfig(), "seed": 0, "controller": "", "control": {}, "variant": ""}
     believed = case.model_copy(update={**of_the_run, "accept": {}, "sweep": {}, "tune": {}, "description": ""})
     return _planned(believed.model_dump_json())
 

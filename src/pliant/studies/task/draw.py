@@ -15,7 +15,7 @@ from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.measure import Signals
+from pliant.studies.task.measure import TaskSignals
 from pliant.surfaces.unroll import unrolled
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
@@ -34,7 +34,7 @@ _EVERY = 10
 """samples: of a map one dot"""
 
 
-def run_figures(case: TaskCase, experiment: Experiment, log: Log, signals: Signals, folder: Path) -> list[Path]:
+def run_figures(case: TaskCase, experiment: Experiment, log: Log, signals: TaskSignals, folder: Path) -> list[Path]:
     """Force and distance from the path over time; force error along the way; the robot at four moments."""
     stem = file_stem(case)
     files = [save(_history(case, log, signals), folder / f"{stem}_history.png")]
@@ -64,7 +64,7 @@ def comparison(results: Sequence[Result], folder: Path) -> list[Path]:
     return files
 
 
-def _history(case: TaskCase, log: Log, signals: Signals) -> Figure:
+def _history(case: TaskCase, log: Log, signals: TaskSignals) -> Figure:
     time = signals.time
     error = np.where(signals.following, signals.force - signals.wanted, np.nan)
     panels = [
@@ -78,7 +78,7 @@ def _history(case: TaskCase, log: Log, signals: Signals) -> Figure:
     return time_series(panels, title=_title(case), phases=log.phases())
 
 
-def _map(case: TaskCase, signals: Signals) -> Figure:
+def _map(case: TaskCase, signals: TaskSignals) -> Figure:
     """Force error as colour along the way on the surface, which is laid flat."""
     on = np.flatnonzero(signals.following)[::_EVERY]
     places = signals.place[on] - case.tool.radius * signals.normal[on]
@@ -90,7 +90,7 @@ def _title(case: TaskCase) -> str:
     return " · ".join(part for part in (case.case, case.robot, case.controller, case.variant) if part)
 
 
-def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: Signals) -> Figure | None:
+def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: TaskSignals) -> Figure | None:
     plant = experiment.plant.inner if isinstance(experiment.plant, ImperfectPlant) else experiment.plant
     on_path = np.flatnonzero(signals.following)
     if not isinstance(plant, MujocoPlant) or on_path.size < 2:

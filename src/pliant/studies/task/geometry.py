@@ -13,13 +13,13 @@ from pliant.references.postures.inverse_kinematics import Target, joint_box
 from pliant.references.postures.posture import freedom, mink_solver
 from pliant.references.toolpaths.files import read_path
 from pliant.references.toolpaths.patterns import PATTERNS
-from pliant.references.toolpaths.pressing import ForceProfile
+from pliant.references.toolpaths.pressing import PressingForce
 from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, resting, through
 from pliant.robot import Robot, Tool
 from pliant.robots.chain import arm_of
 from pliant.spatial import Array, exp3, unit
 from pliant.surfaces import SurfaceGeometry
-from pliant.tasks.parts import Path, Pose
+from pliant.tasks.parts import PathConfig, Pose
 from pliant.tasks.task import TaskParts
 
 _FORWARD = (0.5, 0.6, 0.7, 0.8, 0.9)  # of the arm's reach: where a place for a part is looked for
@@ -144,10 +144,10 @@ def toolpath_of(task: TaskParts, surface: SurfaceGeometry, robot: Robot) -> Tool
     return _from_file(task, surface, near.point, (along, across, near.normal), motion, heading)
 
 
-def force_of(task: TaskParts) -> ForceProfile:
+def force_of(task: TaskParts) -> PressingForce:
     """How hard the tool presses along the path."""
     knots, values = task.force.knots()
-    return ForceProfile(knots, values, task.force.unit)
+    return PressingForce(knots, values, task.force.unit)
 
 
 def _from_file(
@@ -183,7 +183,7 @@ def _from_file(
     return through(surface, world, speed, found.force, motion, heading)
 
 
-def _check_length(path: Path) -> None:
+def _check_length(path: PathConfig) -> None:
     """Raises ConfigError for a pattern that nobody waits for."""
     wide, high = path.size
     filled = abs(wide * high) / path.spacing if path.pattern in ("raster", "spiral") else 0.0

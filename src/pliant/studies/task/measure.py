@@ -20,7 +20,7 @@ _LANDING = 0.2  # s after the first contact that still count as landing
 
 
 @dataclass(frozen=True)
-class Signals:
+class TaskSignals:
     """What the metrics are made of."""
 
     time: Array
@@ -47,12 +47,12 @@ class Measure:
 
     unit: str
     text: str
-    of: Callable[[Signals], float]
+    of: Callable[[TaskSignals], float]
     worst: bool = False
     """whether the worst run decides, else the mean"""
 
 
-def _landing_peak(s: Signals) -> float:
+def _landing_peak(s: TaskSignals) -> float:
     touching = np.flatnonzero(s.force > 0.0)
     if not touching.size:
         return 0.0
@@ -96,7 +96,7 @@ def check_accept(accept: Mapping[str, float]) -> None:
             raise ConfigError(f"accept: there is no metric {name!r}; {options(MEASURES, name)}")
 
 
-def measured(signals: Signals, accept: Mapping[str, float]) -> tuple[Metric, ...]:
+def measured(signals: TaskSignals, accept: Mapping[str, float]) -> tuple[Metric, ...]:
     """All metrics, with the bound that the task puts on them; none if the run ended before the path began."""
     if not np.any(signals.following):
         return ()
@@ -105,7 +105,7 @@ def measured(signals: Signals, accept: Mapping[str, float]) -> tuple[Metric, ...
     )
 
 
-def signals_of(log: Log, frame: str, surface: SurfaceGeometry, torque_limits: Array) -> Signals:
+def signals_of(log: Log, frame: str, surface: SurfaceGeometry, torque_limits: Array) -> TaskSignals:
     """The signals of a run. Args: surface: the true one."""
     time = log.time(f"truth/{frame}/wrench")
     place = log[f"truth/{frame}/position"]
@@ -113,7 +113,7 @@ def signals_of(log: Log, frame: str, surface: SurfaceGeometry, torque_limits: Ar
     asked = log[f"reference/{frame}/wrench"][:, :3]
     off = place - log[f"reference/{frame}/position"]
     off = off - normals * np.sum(off * normals, axis=1, keepdims=True)
-    return Signals(
+    return TaskSignals(
         time,
         np.sum(log[f"truth/{frame}/wrench"][:, :3] * normals, axis=1),
         np.linalg.norm(asked, axis=1),

@@ -11,7 +11,7 @@ from pliant.studies.task import draw
 from pliant.studies.task.build import build, planned
 from pliant.studies.task.check import CHECKED_DRAWS, checked_path
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.measure import WORST, Signals, check_accept, measured, signals_of
+from pliant.studies.task.measure import WORST, TaskSignals, check_accept, measured, signals_of
 from pliant.studies.task.task_study import TaskStudy
 from pliant.studies.task.tuning import Searched
 from pliant.studies.task.world import true_surface
@@ -53,7 +53,7 @@ class PathStudy(TaskStudy):
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         return draw.comparison(results, folder)
 
-    def _signals(self, config: TaskCase, log: Log) -> Signals:
+    def _signals(self, config: TaskCase, log: Log) -> TaskSignals:
         made = planned(config)
         surface = true_surface(config, made.surface, made.path)
         return signals_of(log, config.tool.frame, surface.geometry, made.robot.torque_limit)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pliant.errors import ConfigError, options
 from pliant.estimation import CarriedMass
 from pliant.simulation import ForceSensor
-from pliant.tasks.parts import Tool
+from pliant.tasks.parts import ToolConfig
 from pliant.tasks.task import TaskParts
 
 
@@ -40,7 +40,7 @@ def _weighs(task: TaskParts) -> bool:
     return frame == tool.parent
 
 
-def _rod(tool: Tool, mass: float) -> CarriedMass:
+def _rod(tool: ToolConfig, mass: float) -> CarriedMass:
     """A uniform rod from the sensor along its z axis, as the robot's model has it."""
     across, along = mass * (3.0 * tool.radius**2 + tool.length**2) / 12.0, 0.5 * mass * tool.radius**2
     return CarriedMass(mass, (0.0, 0.0, 0.5 * tool.length), inertia=(across, across, along, 0.0, 0.0, 0.0))

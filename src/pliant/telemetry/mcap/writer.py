@@ -47,7 +47,7 @@ _LIBRARY = f"pliant with mcap {mcap.__version__}, mcap-ros2-support {mcap_ros2._
 
 
 @dataclass
-class _Chunk:
+class _OpenChunk:
     """What goes into the chunk under construction."""
 
     head: RecordBuilder = field(default_factory=RecordBuilder)
@@ -89,7 +89,7 @@ class McapFile:
         """
         if not len(times):
             return
-        chunk = _Chunk()
+        chunk = _OpenChunk()
         ids = [self._channel(t.name, t.datatype, t.template.data, t.metadata, chunk) for t in topics]
         head = bytes(chunk.head.end())
         rows, starts = self._rows(topics, ids, times, columns)
@@ -100,7 +100,7 @@ class McapFile:
 
     def add_text(self, topic: str, time: int, text: str) -> None:
         """Writes one std_msgs/String at a log time in ns."""
-        chunk = _Chunk()
+        chunk = _OpenChunk()
         channel = self._channel(topic, "std_msgs/msg/String", b"", dict, chunk)
         head = bytes(chunk.head.end())
         data = encode("std_msgs/msg/String", {"data": text})
@@ -138,7 +138,7 @@ class McapFile:
         self._crc = zlib.crc32(data, self._crc)
 
     def _channel(
-        self, topic: str, datatype: str, data: bytes, metadata: Callable[[], dict[str, str]], chunk: _Chunk
+        self, topic: str, datatype: str, data: bytes, metadata: Callable[[], dict[str, str]], chunk: _OpenChunk
     ) -> int:
         """Id of a topic's channel. A topic whose messages change their layout gets a second channel, as MCAP allows."""
         key = (topic, datatype, data)
