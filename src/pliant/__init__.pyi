@@ -9,7 +9,7 @@ from pliant.estimation import JointStateFilter as JointStateFilter
 from pliant.estimation import MomentumObserver as MomentumObserver
 from pliant.estimation import WrenchEstimator as WrenchEstimator
 from pliant.face.result import Comparison as Comparison
-from pliant.face.result import Result as Result
+from pliant.face.result import RunResult as RunResult
 from pliant.face.run import compare as compare
 from pliant.face.run import run as run
 from pliant.interfaces import Controller as Controller
