@@ -153,6 +153,23 @@ def test_a_home_that_is_searched_for_is_in_front_and_points_down(name: str) -> N
     assert pose.rotation[2, 2] < -0.99
 
 
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (mjcf(arm(), after='<actuator><motor joint="one" forcelimited="true" forcerange="0 5"/></actuator>'),
+         "one cannot push both ways (0 to 5)"),
+        (mjcf(arm(), after='<actuator><motor joint="one" gear="0" ctrlrange="-1 1"/></actuator>'), "cannot push both"),
+        (mjcf(arm(), after='<actuator><motor site="tip" gear="0 0 1 0 0 0"/></actuator>'), "1 actuators of the file"),
+        (mjcf(arm(), before='<option density="1000"/>'), "medium"),
+    ],
+)  # fmt: skip
+def test_what_of_an_mjcf_plays_no_part_is_said(text: str, says: str, tmp_path: Path) -> None:
+    robot = load(tmp_path, text)
+    assert any(says in note for note in robot.notes)
+    assert not any(says in note for note in load(tmp_path, MJCF["plain"]).notes)
+    assert np.isinf(robot.torque_limit).all()
+
+
 def test_an_arm_that_cannot_point_down_is_said_to(tmp_path: Path) -> None:
     """A panda whose wrist hardly bends, so that its flange looks up; and the panda."""
     text = locate("panda").read_text()

@@ -6,6 +6,7 @@ own; mass matrix, bias, gravity and frame placements agree with MuJoCo's reading
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Collection
 from pathlib import Path
 
@@ -53,7 +54,9 @@ def read_mjcf(path: Path, locked: Collection[str]) -> Description:
 
 def _compile(path: Path) -> mujoco.MjModel:
     try:
-        compiled = mujoco.MjSpec.from_file(str(path)).compile()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what matters of a file is refused or said by the checks, in their words
+            compiled = mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, RuntimeError, mujoco.FatalError, mujoco.UnexpectedError) as error:
         reason = " ".join(str(error).split())
         remedy = "; put the file where the MJCF looks for it" if "opening file" in reason else ""

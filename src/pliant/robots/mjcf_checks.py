@@ -10,7 +10,7 @@ import numpy as np
 
 from pliant.errors import RobotError
 from pliant.robots.description import lock_hint
-from pliant.robots.mjcf_tree import Tree, joint_name
+from pliant.robots.mjcf_tree import Tree, actuators_of, joint_name
 from pliant.robots.urdf_numbers import LONGEST, WIDEST
 
 _NARROWEST = 0.07
@@ -99,6 +99,11 @@ def notes_on_forces(compiled: mujoco.MjModel, tree: Tree) -> list[str]:
     sprung = [name for joint, name in names if compiled.jnt_stiffness[joint]]
     if sprung:
         notes.append(f"joint springs of the file play no part ({', '.join(sprung)})")
+    at_joints = {a for joint in range(compiled.njnt) for a in actuators_of(compiled, joint)}
+    if len(at_joints) < compiled.nu:
+        notes.append(f"{compiled.nu - len(at_joints)} actuators of the file act on no joint and play no part")
+    if compiled.opt.density > 0.0 or compiled.opt.viscosity > 0.0:
+        notes.append("the file's medium (density, viscosity) plays no part")
     if np.any(compiled.body_gravcomp):
         notes.append("the file's gravity compensation (gravcomp) plays no part: say it in the plant")
     if compiled.ntendon:

@@ -25,9 +25,14 @@ def torque_limits(compiled: mujoco.MjModel, tree: Tree) -> tuple[Array, list[str
         if compiled.jnt_actfrclimited[joint]:
             low, high = compiled.jnt_actfrcrange[joint]
             total = np.array([max(total[0], low), min(total[1], high)])
-        if not np.isclose(-total[0], total[1], rtol=1e-9):
+        if min(-total[0], total[1]) > 0.0 and not np.isclose(-total[0], total[1], rtol=1e-9):
             lopsided.append(name)
-        limits[dof] = max(min(-total[0], total[1]), 0.0)
+        least = min(-total[0], total[1])
+        if least <= 0.0:
+            notes.append(
+                f"the actuators of {name} cannot push both ways ({total[0]:g} to {total[1]:g}): no limit is taken there"
+            )
+        limits[dof] = least if least > 0.0 else np.inf
     if servos:
         notes.append(
             f"the actuators of {', '.join(dict.fromkeys(servos))} are servos: their force limits count, their gains"
