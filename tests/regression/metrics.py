@@ -26,7 +26,7 @@ HAPTIC = (
 )
 HAPTIC += " delay target-sequence random parameters"
 POLISHING = "ideal tables-2-3-4 tables-2-3-4-delayed square slow slow-tilted fast-tilted fast-pushed horizon stiffness"
-POLISHING += " force-weight iterations anchor ripple ablation robustness"
+POLISHING += " force-weight iterations anchor ripple ablation robustness wrong-masses"
 BASELINES = ("stack-paper", "stack-corrected", "stack-hapfic", "spring", "operational-space")
 MPC = ("classical-mpc", "torque-feedback-mpc", "force-feedback-mpc", "offset-free-mpc")
 
