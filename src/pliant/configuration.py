@@ -87,7 +87,9 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise ConfigError(f"configuration file {error}") from None
     except RecursionError:
         raise ConfigError(f"configuration file {path} is nested too deeply") from None
-    except ValueError as error:  # TOML's, UTF-8's, or a number with more digits than Python reads
+    except UnicodeDecodeError:
+        raise ConfigError(f"configuration file {path} is not UTF-8 text: save it in that encoding") from None
+    except ValueError as error:  # TOML's, or a number with more digits than Python reads
         raise ConfigError(f"configuration file {path} is not TOML: {error}") from error
     if _is_deep(values):
         raise ConfigError(f"configuration file {path} is nested more than {_MOST_DEPTH} tables deep")

@@ -14,11 +14,13 @@ from pliant.errors import ConfigError
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
 from pliant.robot import Robot
+from pliant.simulation import random_pushes
 from pliant.studies.task.build_list import listed
 from pliant.studies.task.config import TaskCase, case_of
 from pliant.studies.task.listed import changes_of, scene_of, stages_of
 from pliant.studies.task.measure_list import measured_list
 from pliant.studies.task.study import study_of
+from pliant.studies.task.world import pushes_of
 from pliant.tasks import load_task
 from pliant.telemetry.log import Log
 from pliant.telemetry.recorder import Recorder
@@ -42,6 +44,10 @@ def recorded(study: Any, case: Any, period: float) -> Log:
         ("stack", "line-hardware", "line", "line", 0.3),
         ("haptic", "floor", "floor", "floor", 0.8),
         ("haptic", "box-tip", "push-box", "push-box", 1.3),
+        ("stack", "figure8-hardware", "figure8-hardware", "figure8-hardware", 0.3),
+        ("stack", "line-slow", "line", "line-slow", 0.3),
+        ("haptic", "ball", "ball", "ball", 0.7),
+        ("haptic", "target-sequence", "target-sequence", "target-sequence", 1.6),
     ],
 )
 def test_a_case_of_a_study_is_a_task_file(study: str, case: str, task: str, variant: str, duration: float) -> None:
@@ -209,6 +215,21 @@ def test_events_are_drawn_by_the_seed_and_are_for_the_controller_that_they_name(
     assert max(times) <= 2.8
     np.testing.assert_array_equal(changes_of(case)[0].tuning["force_max"], np.full(3, 120.0))
     assert not changes_of(merged(case, {"controller": "haptic-hold"}))[0].tuning
+
+
+def test_pushes_one_after_the_other_are_drawn_as_those_of_the_study(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the same generator the same pushes; each seed other ones; none beyond the run."""
+    case = study_of("figure8-hardware").case("figure8-pushed")
+    apart = [pushes_of(merged(case, {"seed": seed}), 12.0) for seed in range(3)]
+    assert len({pushes[0].start for pushes in apart}) == 3
+    monkeypatch.setattr("pliant.studies.task.world.generator", lambda *_: np.random.default_rng(5))
+    mine = pushes_of(case, 12.0)
+    theirs = random_pushes(np.random.default_rng(5), "elbow", 12.0, start=2.0)
+    for name in ("start", "duration", "force"):
+        np.testing.assert_allclose([getattr(x, name) for x in mine], [getattr(x, name) for x in theirs], rtol=1e-12)
+    assert len(mine) > 10
+    one = merged(case, {"disturbance": [{"push": (1.0, 2.0, 3.0), "start": 13.0}]})
+    assert pushes_of(one, 12.0) == ()
 
 
 def test_things_stand_where_the_scene_says() -> None:

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from pliant.configuration import Config, quantity
 from pliant.spatial import Array, rpy
 from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
-from pliant.tasks.draws import Drawn
+from pliant.tasks.draws import Drawn, bounds
 
 Vector = tuple[float, float, float]
 
@@ -184,28 +184,6 @@ class TimingConfig(Config):
     computation_delay: float = quantity(5e-3, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
 
 
-class WorkspaceConfig(Config):
-    """A box in the world, along its axes."""
-
-    lower: Vector = quantity((-100.0, -100.0, -100.0), "m", "least x, y and z")
-    upper: Vector = quantity((100.0, 100.0, 100.0), "m", "largest x, y and z")
-
-    @model_validator(mode="after")
-    def _holds_something(self) -> WorkspaceConfig:
-        if not all(low < high for low, high in zip(self.lower, self.upper, strict=True)):
-            raise ValueError(f"lower must be below upper, got {list(self.lower)} and {list(self.upper)}")
-        return self
-
-
-class Limits(Config):
-    """What must not be passed by the moved frame: a task that asks for more is refused, a run ends there as failed."""
-
-    force: float | None = quantity(None, "N", "of the contact; none: no limit", gt=0.0)
-    speed: float | None = quantity(None, "m/s", "of the frame; none: no limit", gt=0.0)
-    torque: float | None = quantity(None, "1", "share of each joint's limit; none: no limit", gt=0.0, le=1.0)
-    workspace: WorkspaceConfig | None = Field(default=None, description="where the frame may be; none: anywhere")
-
-
 class TruthConfig(Config):
     """How the world differs from what the controller believes. A simulation reads it, nothing else."""
 
@@ -228,12 +206,23 @@ class TruthConfig(Config):
 
 
 class Disturbance(Config):
-    """A push from outside."""
+    """A push from outside, or one after the other."""
 
-    push: float | Vector = quantity(15.0, "N", "a force in the world's axes, or its size in a random direction")
+    push: Drawn | Vector = quantity(15.0, "N", "a force in the world's axes, or its size in a random direction")
     frame: str = Field(default="elbow", description="that is pushed")
-    start: float = quantity(4.0, "s", "of the push", ge=0.0)
-    duration: float = quantity(0.4, "s", "of the push", gt=0.0)
+    start: float = quantity(4.0, "s", "of the push; of the first gap, where there is one", ge=0.0)
+    duration: Drawn = quantity(0.4, "s", "of a push, above zero")
+    gap: Drawn | None = quantity(
+        None, "s", "before each push, not negative: pushes come until the run ends; none: one push"
+    )
+
+    @model_validator(mode="after")
+    def _can_be(self) -> Disturbance:
+        if not bounds(self.duration)[0] > 0.0:
+            raise ValueError("the duration of a disturbance is above zero")
+        if self.gap is not None and not (bounds(self.gap)[0] >= 0.0):
+            raise ValueError("the gap between two pushes is not negative")
+        return self
 
 
 class Simulation(Config):

@@ -9,10 +9,10 @@ from pydantic import Field, model_validator
 from pliant.configuration import Config, Range, quantity
 from pliant.robots.rotors import RotorInertia
 from pliant.tasks.estimation import Estimation
+from pliant.tasks.limits import Limits
 from pliant.tasks.parts import (
     Disturbance,
     Force,
-    Limits,
     PathConfig,
     Phases,
     Sensor,

@@ -82,7 +82,7 @@ def build(case: TaskCase) -> Experiment:
         robot=robot,
         model=with_mass_error(robot, case.truth.link_masses, generator(case.seed, "model.masses")),
         believed=believed,
-        plant=lambda felt: plant_of(case, robot, surface, made.references.start),
+        plant=lambda felt: plant_of(case, robot, surface, made.references.start, made.references.longest),
         source=lambda ahead: _source(case, made.references.source(ahead)),
         sensing=sensing_of(
             case.estimation, velocity_gain=case.velocity_share, surface=surface_fit(case), load=known_load(case)

@@ -192,7 +192,7 @@ def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:
         start=made.start,
         joints=JointEffects(truth.joint_friction, truth.joint_damping, case.compensates),
         sensors=[_sensor(case, frames[0], heavier)] if felt or case.limits.force is not None else [],
-        pushes=pushes_of(case),
+        pushes=pushes_of(case, made.duration),
         observe=list(frames),
     )
     if perfect:

@@ -10,7 +10,7 @@ import numpy as np
 from pliant.errors import ConfigError
 from pliant.simulation.limited_plant import RunLimits
 from pliant.spatial import Array
-from pliant.tasks.parts import Limits
+from pliant.tasks.limits import Limits
 
 
 def run_limits(limits: Limits, frame: str) -> RunLimits | None:

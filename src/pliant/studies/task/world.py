@@ -24,6 +24,9 @@ from pliant.studies.task.geometry import robot_of
 from pliant.studies.task.sensor import sensor_of
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.draws import Drawn, drawn
+from pliant.tasks.parts import Vector
+
+_SHORTEST = 1e-3  # s, of a push: a normal distribution has no least value
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,7 @@ def imperfections_of(case: TaskCase) -> Imperfections:
     return found.model_copy(update={"joint_damping": damping}) if damping else found
 
 
-def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array) -> Plant[Any]:
+def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array, seconds: float) -> Plant[Any]:
     """The robot over the part, with its imperfections where there are any."""
     tool = case.tool.frame
     imperfections = imperfections_of(case)
@@ -78,7 +81,7 @@ def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array) -
         start=start,
         joints=JointEffects(case.truth.joint_friction, case.truth.joint_damping, case.compensates),
         sensors=[sensor_of(case, heavier)],
-        pushes=pushes_of(case),
+        pushes=pushes_of(case, seconds),
         observe=[tool],
         speed_stop=SPEED_STOP,
     )
@@ -89,18 +92,27 @@ def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array) -
     return ImperfectPlant(physics, imperfections, seed=case.seed, period=case.simulation.period, holding_torque=holding)
 
 
-def pushes_of(case: TaskCase) -> tuple[Push, ...]:
-    """From outside, as the seed draws their directions."""
+def pushes_of(case: TaskCase, seconds: float) -> tuple[Push, ...]:
+    """From outside, as the seed draws them. Args: seconds: that the run takes at most."""
     found: list[Push] = []
     rng = generator(case.seed, "pushes")
     for one in case.disturbance:
-        force = one.push
-        if not isinstance(force, tuple):
-            way = unit(rng.standard_normal(3), "a direction")
-            x, y, z = (float(entry) for entry in one.push * way)  # type: ignore[operator]
-            force = (x, y, z)
-        found.append(Push(one.frame, force, one.start, one.duration))
+        time = one.start
+        while time < seconds:
+            time += 0.0 if one.gap is None else drawn(one.gap, rng)
+            force, duration = _push(one.push, rng), max(drawn(one.duration, rng), _SHORTEST)
+            if time < seconds:
+                found.append(Push(one.frame, force, time, duration))
+            time = math.inf if one.gap is None else time + duration
     return tuple(found)
+
+
+def _push(push: Drawn | Vector, rng: np.random.Generator) -> Vector:
+    if isinstance(push, tuple):
+        return push
+    way = unit(rng.standard_normal(3), "a direction")
+    x, y, z = (float(entry) for entry in drawn(push, rng) * way)
+    return x, y, z
 
 
 def drawn_tool_mass(case: TaskCase) -> float:
