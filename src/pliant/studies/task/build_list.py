@@ -118,8 +118,25 @@ def build_list(case: TaskCase) -> Experiment:
         duration=made.duration,
         limits=run_limits(case.limits, frames[0]),
         channels=() if tracking else (Channel(f"planner/{frames[0]}/clamped", "m"),),
+        warnings=_sideways(case, made),
     )
     return wired(case.entry, made.parameters, offer)
+
+
+def _sideways(case: TaskCase, made: Listed) -> tuple[str, ...]:
+    """What is not held: a controller that looks ahead regulates along the world's z axis where no surface is said."""
+    if made.tracked is not None or case.entry.needs(made.parameters).preview is None:
+        return ()
+    stages = stages_of(case, made.robot, made.robot.placement(made.start, made.believed.frames[0])[1])
+    across = [
+        one.name for one in stages if np.linalg.norm(one.task.wrench[:2]) > 0.02 * np.linalg.norm(one.task.wrench)
+    ]
+    if not across:
+        return ()
+    return (
+        f"controller {case.controller!r} presses along the world's z axis in a list of phases: the rest of the wrench"
+        f" of {', '.join(map(repr, across))} will not be held; haptic holds it",
+    )
 
 
 def _believed(case: TaskCase, frames: tuple[str, ...], oriented: bool, presses: str | None) -> Believed:
