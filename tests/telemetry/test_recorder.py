@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pliant.environment import Environment
 from pliant.errors import ConfigError, OutputError, ShapeError
 from pliant.signals import Tick
 from pliant.telemetry import Channel, Log, Recorder, RunInfo
@@ -296,3 +297,23 @@ def test_an_empty_run_leaves_a_readable_log(tmp_path: Path) -> None:
     log = Log.open(tmp_path / "a.mcap")
     assert not log.channels
     assert log.duration == 0.0
+
+
+def test_what_a_contact_feels_like_is_in_the_log_with_its_units() -> None:
+    def felt(k: int) -> Tick:
+        tick = make_tick(k)
+        found = Environment(2e4 + k, 100.0 + k, 30.0, np.inf if k == 0 else 5.0)
+        return dataclasses.replace(tick, estimate=dataclasses.replace(tick.estimate, environments={"tool": found}))
+
+    recorder = Recorder(None, INFO)
+    recorder(make_tick(0))  # baseline: without an estimator there is no such channel
+    for k in range(1, 4):
+        recorder(felt(k))
+    log = recorder.log()
+    np.testing.assert_array_equal(log["estimate/tool/stiffness"], [20001.0, 20002.0, 20003.0])
+    np.testing.assert_array_equal(log["estimate/tool/damping"], [101.0, 102.0, 103.0])
+    np.testing.assert_array_equal(log["estimate/tool/damping_std"], [5.0, 5.0, 5.0])
+    assert log.channels["estimate/tool/stiffness_std"].unit == "N/m"
+    unsure = Recorder(None, INFO)
+    unsure(felt(0))
+    assert np.isinf(unsure.log()["estimate/tool/damping_std"]).all()
