@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from pydantic import Field
 
-from pliant.configuration import Config
+from pliant.configuration import Config, quantity
 from pliant.environment import Environment
 from pliant.estimation.filters import Butterworth, Memory
 from pliant.frozen import changed
@@ -36,24 +37,43 @@ class FitState:
 class FitConfig(Config):
     """How the fit forgets and when it learns."""
 
-    memory: float = 300.0
-    """samples after which an old one counts 1/e; only samples that are used count, so that standstill erases nothing"""
-    cutoff: float = 50.0
-    """Hz of the Butterworth filter that all three signals pass alike, which leaves their relation as it is"""
-    touch: float = 2.0
-    """N above which there is contact"""
-    least_force: float = 0.1
-    """N that the force must have changed since the last sample that was used; a few times its noise after the filter"""
-    least_motion: float = 1e-7
-    """m that the depth must have changed since then; above the position noise after the filter"""
-    noise_depth: float = 0.0
-    """m, standard deviation of the depth before the filter; see `EnvironmentFit`"""
-    noise_rate: float = 0.0
-    """m/s, the same of its rate"""
-    least_samples: int = 40
-    """samples before the first belief"""
-    accuracy: float = 0.2
-    """largest relative standard uncertainty of K in a belief that is shown"""
+    memory: float = quantity(
+        300.0,
+        "1",
+        "samples after which an old one counts 1/e; only those that are used count, so that standstill erases nothing",
+        gt=0.0,
+        le=1e9,
+    )
+    cutoff: float = quantity(
+        50.0,
+        "Hz",
+        "of the Butterworth filter that all three signals pass alike, which leaves their relation as it is",
+        gt=0.0,
+        le=1e6,
+    )
+    touch: float = quantity(2.0, "N", "above which there is contact", ge=0.0, le=1e6)
+    least_force: float = quantity(
+        0.1,
+        "N",
+        "that the force must have changed since the last sample that was used; a few times its noise after the filter",
+        ge=0.0,
+        le=1e6,
+    )
+    least_motion: float = quantity(
+        1e-7,
+        "m",
+        "that the depth must have changed since then; above the position noise after the filter",
+        ge=0.0,
+        le=1.0,
+    )
+    noise_depth: float = quantity(
+        0.0, "m", "standard deviation of the depth before the filter; see `EnvironmentFit`", ge=0.0, le=1.0
+    )
+    noise_rate: float = quantity(0.0, "m/s", "the same of its rate", ge=0.0, le=1e3)
+    least_samples: int = Field(default=40, ge=1, le=10**9, description="samples before the first belief")
+    accuracy: float = quantity(
+        0.2, "1", "largest relative standard uncertainty of K in a belief that is shown", gt=0.0, le=1e12
+    )
 
 
 class EnvironmentFit:

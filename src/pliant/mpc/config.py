@@ -56,7 +56,10 @@ class Bounds(ControllerConfig):
         default=None, gt=0.0, description="0 ≤ normal force ≤ force_max", json_schema_extra={"unit": "N"}
     )
     friction: float | None = Field(
-        default=None, gt=0.0, description="cone: tangential ≤ friction · normal, dimension 3, 6"
+        default=None,
+        gt=0.0,
+        description="cone: tangential ≤ friction · normal, dimension 3, 6",
+        json_schema_extra={"unit": "1"},
     )
 
     @property
@@ -123,14 +126,24 @@ class MpcConfig(ControllerConfig):
         default=2e-3, gt=0.0, le=0.1, description="time from solve to solve", json_schema_extra={"unit": "s"}
     )
     max_iterations: int = Field(default=8, ge=1, le=1000, description="SQP steps per solve")
-    tolerance: float = Field(default=1e-4, gt=0.0, description="KKT residual at which a solve ends")
+    tolerance: float = Field(
+        default=1e-4,
+        gt=0.0,
+        description="KKT residual at which a solve ends",
+        json_schema_extra={"unit": "that of the cost's slope"},
+    )
     time_budget: float | None = Field(
         default=None, gt=0.0, description="wall time after which no iteration starts", json_schema_extra={"unit": "s"}
     )
     deadline: float | None = Field(
         default=None, gt=0.0, description="wall time of a solve that counts as missed", json_schema_extra={"unit": "s"}
     )
-    regularisation: float = Field(default=1e-9, ge=0.0, description="added to the diagonal of the Hessian")
+    regularisation: float = Field(
+        default=1e-9,
+        ge=0.0,
+        description="added to the diagonal of the Hessian",
+        json_schema_extra={"unit": "that of the cost's curvature"},
+    )
     between: Literal["hold", "riccati"] = Field(
         default="hold", description="between two solves: hold the torque, or the solver's own state feedback"
     )
@@ -155,7 +168,10 @@ class MpcConfig(ControllerConfig):
         default=5.0, ge=0.0, description="joint damping when no plan is left", json_schema_extra={"unit": "N·m·s/rad"}
     )
     max_gap: float = Field(
-        default=10.0, gt=0.0, description="Σ|f(x, u) − x⁺| over states and nodes above which a solution is not used"
+        default=10.0,
+        gt=0.0,
+        description="Σ|f(x, u) − x⁺| over states and nodes above which a solution is not used",
+        json_schema_extra={"unit": "that of the states"},
     )
     bounds: Bounds = Bounds()
     compensation: Compensation = Compensation()

@@ -18,17 +18,28 @@ class Term(ControllerConfig):
     """One quadratic cost term."""
 
     weight: float = Field(
-        default=0.0, ge=0.0, description="scalar weight w of the running nodes, in the unit of the term"
+        default=0.0,
+        ge=0.0,
+        description="scalar weight w of the running nodes",
+        json_schema_extra={"unit": "1/(unit of the term)²"},
     )
     activation: tuple[float, ...] = Field(
         default=(1.0,),
         min_length=1,
         description="a per component, squared; the last one counts for all that follow",
     )
-    terminal: float | None = Field(default=None, ge=0.0, description="w of the last node; None: as the running ones")
+    terminal: float | None = Field(
+        default=None,
+        ge=0.0,
+        description="w of the last node; None: as the running ones",
+        json_schema_extra={"unit": "1/(unit of the term)²"},
+    )
     terminal_times_dt: bool = Field(default=True, description="whether the last node's weight is multiplied by dt too")
     per_node: float | None = Field(
-        default=None, gt=0.0, description="the weight grows along the horizon: node k has min(per_node · k, weight)"
+        default=None,
+        gt=0.0,
+        description="the weight grows along the horizon: node k has min(per_node · k, weight)",
+        json_schema_extra={"unit": "1/(unit of the term)²"},
     )
 
     @field_validator("activation")

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pydantic import Field
+
 from pliant.mpc.config import Compensation, Contact, MpcConfig
 from pliant.mpc.costs import Costs, PhaseCosts, Term
 from pliant.mpc.models import Kind
 
+_KIND = "which model predicts"
+_PHASES = "costs of each phase by name"
 _PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
 
 
@@ -36,7 +40,7 @@ _VELOCITY = Term(weight=0.05, terminal=1.0)
 class ForceFeedbackMpc(MpcConfig):
     """Force feedback, [FFMPC] section V-C: the measured contact force is part of the state."""
 
-    kind: Kind = "force_feedback"
+    kind: Kind = Field(default="force_feedback", description=_KIND)
     costs: Costs = Costs(
         posture=_POSTURE,
         joint_velocity=_JOINT_VELOCITY,
@@ -46,8 +50,12 @@ class ForceFeedbackMpc(MpcConfig):
         force=Term(weight=0.01, terminal=0.05),
         force_rate=Term(weight=6e-7),
     )
-    phases: dict[str, PhaseCosts] = _phases(
-        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
+    phases: dict[str, PhaseCosts] = Field(
+        default=_phases(
+            _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
+        ),
+        min_length=1,
+        description=_PHASES,
     )
 
 
@@ -76,15 +84,19 @@ class OffsetFreeMpc(ForceFeedbackMpc):
         force=Term(weight=0.03, terminal=0.15),
         force_rate=Term(weight=6e-7),
     )
-    phases: dict[str, PhaseCosts] = _phases(
-        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(1000.0, _PLANE)
+    phases: dict[str, PhaseCosts] = Field(
+        default=_phases(
+            _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(1000.0, _PLANE)
+        ),
+        min_length=1,
+        description=_PHASES,
     )
 
 
 class ClassicalMpc(MpcConfig):
     """Classical, [FFMPC] section III-C: rigid contact, the measured force is not used."""
 
-    kind: Kind = "classical"
+    kind: Kind = Field(default="classical", description=_KIND)
     contact: Contact = Contact(baumgarte=(0.0, 10.0))
     costs: Costs = Costs(
         posture=_POSTURE,
@@ -94,15 +106,17 @@ class ClassicalMpc(MpcConfig):
         velocity=_VELOCITY,
         force=Term(weight=1000.0),
     )
-    phases: dict[str, PhaseCosts] = _phases(
-        _translation(5.0, _ALL, per_node=2.0), _translation(2.0, _ALL), _translation(60.0, _PLANE)
+    phases: dict[str, PhaseCosts] = Field(
+        default=_phases(_translation(5.0, _ALL, per_node=2.0), _translation(2.0, _ALL), _translation(60.0, _PLANE)),
+        min_length=1,
+        description=_PHASES,
     )
 
 
 class TorqueFeedbackMpc(MpcConfig):
     """Torque feedback, [FFMPC] section IV-C: rigid contact, the measured joint torque is part of the state."""
 
-    kind: Kind = "torque_feedback"
+    kind: Kind = Field(default="torque_feedback", description=_KIND)
     contact: Contact = Contact(baumgarte=(0.0, 10.0))
     costs: Costs = Costs(
         posture=Term(weight=0.02, activation=(10.0, 10.0, 40.0, 10.0, 10.0, 50.0)),
@@ -113,6 +127,10 @@ class TorqueFeedbackMpc(MpcConfig):
         velocity=_VELOCITY,
         force=Term(weight=1000.0),
     )
-    phases: dict[str, PhaseCosts] = _phases(
-        _translation(12.0, _ALL, per_node=5.0), _translation(200.0, _PLANE), _translation(200.0, _PLANE)
+    phases: dict[str, PhaseCosts] = Field(
+        default=_phases(
+            _translation(12.0, _ALL, per_node=5.0), _translation(200.0, _PLANE), _translation(200.0, _PLANE)
+        ),
+        min_length=1,
+        description=_PHASES,
     )

@@ -25,9 +25,15 @@ class IdentifyToolConfig(Config):
     task_frame: str | None = Field(default=None, description="frame of the reference's task; None: the sensor's")
     poses: int = Field(default=8, ge=4, le=1000, description="number of poses; more make the uncertainty smaller")
     joints: int = Field(default=3, ge=1, le=100, description="how many of the last joints move")
-    share: float = Field(default=0.8, gt=0.0, le=1.0, description="of each joint's range that is used")
+    share: float = Field(
+        default=0.8, gt=0.0, le=1.0, description="of each joint's range that is used", json_schema_extra={"unit": "1"}
+    )
     lowest: float | None = Field(
-        default=None, description="least height of the sensor; None: 0.1 m below home", json_schema_extra={"unit": "m"}
+        default=None,
+        ge=-10.0,
+        le=10.0,
+        description="least height of the sensor; None: 0.1 m below home",
+        json_schema_extra={"unit": "m"},
     )
     move: float = Field(default=2.0, ge=0.01, le=1e3, description="from pose to pose", json_schema_extra={"unit": "s"})
     settle: float = Field(

@@ -1,14 +1,13 @@
 """Names, units and shapes of the channels of a log, and where each one sits in a `Tick`.
 
 measurement/…  estimate/…  reference/…  command/…  truth/…      the signals
-everything else                                                  the diagnostics of commands and references, as named
-there
+everything else                                                  diagnostics of commands and references, as named there
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from operator import attrgetter, itemgetter
 from typing import Any
@@ -133,7 +132,7 @@ def _fixed(tick: Tick, joints: tuple[str, ...]) -> list[ChannelGroup]:
     if tick.reference.posture is not None:
         fields.append(("reference", "posture", _JOINT))
     channels = tuple(Channel(f"{signal}/{field}", unit, (len(joints),), joints) for signal, field, unit in fields)
-    return [ChannelGroup(_attributes([f"{signal}.{field}" for signal, field, _ in fields]), channels)]
+    return [ChannelGroup(attrgetter(*[f"{signal}.{field}" for signal, field, _ in fields]), channels)]
 
 
 def _wrenches(tick: Tick) -> list[ChannelGroup]:
@@ -186,7 +185,7 @@ def _truth(tick: Tick, joints: tuple[str, ...]) -> list[ChannelGroup]:
     if truth.limit_excess is not None:
         fields.append(("limit_excess", _JOINT))
     channels = tuple(Channel(f"truth/{name}", unit, (len(joints),), joints) for name, unit in fields)
-    found = [ChannelGroup(_attributes([f"truth.{name}" for name, _ in fields]), channels)]
+    found = [ChannelGroup(attrgetter(*[f"truth.{name}" for name, _ in fields]), channels)]
     for field, name, unit, shape in (
         ("positions", "{}/position", "m", (3,)),
         ("rotations", "{}/rotation", "1", (3, 3)),
@@ -241,10 +240,6 @@ def _mapping(path: str, keys: tuple[str, ...], channels: tuple[Channel, ...]) ->
     if len(keys) == 1:
         return ChannelGroup(lambda tick: (pick(find(tick)),), channels)
     return ChannelGroup(lambda tick: pick(find(tick)), channels)
-
-
-def _attributes(paths: list[str]) -> Callable[[Tick], Sequence[Any]]:
-    return attrgetter(*paths)
 
 
 def _check_unique(names: list[str]) -> None:

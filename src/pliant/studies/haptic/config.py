@@ -60,14 +60,22 @@ class Check(Config):
         "reachable",
         "share",
     ] = Field(description="what is measured; see `pliant.studies.haptic.measure`")
-    name: str
+    name: str = Field(description="of the metric")
     begin: float = quantity(0.0, "s", "start of the window; the command's time for `settle`", ge=0.0)
-    end: float | None = quantity(None, "s", "end of the window; none: of the run")
+    end: float | None = quantity(None, "s", "end of the window; none: of the run", ge=0.0, le=1e9)
     axis: int = Field(default=2, ge=0, le=2, description="x, y, z")
-    wanted: float | None = quantity(None, "N", "force that was asked for; none: as the log has it")
-    before: float | None = quantity(None, "N", "force before a step; none: the true force at its command")
+    wanted: float | None = quantity(None, "N", "force that was asked for; none: as the log has it", ge=-1e6, le=1e6)
+    before: float | None = quantity(
+        None, "N", "force before a step; none: the true force at its command", ge=-1e6, le=1e6
+    )
     relative: bool = Field(default=False, description="as a share of the force that was asked for")
-    target: float | None = Field(default=None, description="bound of the metric")
+    target: float | None = Field(
+        default=None,
+        ge=-1e9,
+        le=1e9,
+        description="bound of the metric",
+        json_schema_extra={"unit": "that of the metric"},
+    )
 
 
 class HapticCaseConfig(CaseConfig):
@@ -83,7 +91,7 @@ class HapticCaseConfig(CaseConfig):
     sensor: bool = Field(default=True, description="whether there is a force sensor at the frame")
     duration: float = Field(default=7.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     period: float = quantity(1e-3, "s", "control period", gt=0.0)
-    physics_step: float = quantity(2e-5, "s", "", gt=0.0)
+    physics_step: float = quantity(2e-5, "s", "of the simulation", gt=0.0)
     environment: HapticScene = HapticScene()
     impedance: FootImpedance = FootImpedance()
     exploration: ExplorationConfig = ExplorationConfig()

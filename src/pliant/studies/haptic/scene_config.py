@@ -46,7 +46,7 @@ class BoxConfig(Config):
 class BallConfig(Config):
     """A soft ball."""
 
-    radius: float = quantity(0.1, "m", "", ge=1e-4, le=100.0)
+    radius: float = quantity(0.1, "m", "of the ball", ge=1e-4, le=100.0)
     position: Vector = quantity((0.12, 0.0, 0.1), "m", "of its centre")
     mass: float = quantity(0.5, "kg", "0: fixed to the world", ge=0.0, le=1e5)
     material: Material = SOFT
@@ -55,7 +55,7 @@ class BallConfig(Config):
 class HapticScene(Config):
     """What stands around the leg; contacts follow the explicit law with stiction."""
 
-    floor: Floor | None = Floor()
+    floor: Floor | None = Field(default=Floor(), description="none: without")
     box: BoxConfig | None = None
     ball: BallConfig | None = None
     shank: bool = Field(default=False, description="whether the shank touches things, too")

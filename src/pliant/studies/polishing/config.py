@@ -56,7 +56,7 @@ class PolishingConfig(CaseConfig):
     )
     duration: float = Field(default=10.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
     period: float = Field(default=1e-3, gt=0.0, description="control period", json_schema_extra={"unit": "s"})
-    physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
+    physics_step: float = Field(default=5e-4, gt=0.0, description="of the simulation", json_schema_extra={"unit": "s"})
     table: Table = Table()
     task: Work = Work()
     imperfections: Imperfections = Field(default=Imperfections(), description="of sensors, drives and computation")

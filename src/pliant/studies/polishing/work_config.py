@@ -25,8 +25,12 @@ class Table(Config):
     x: float = Field(
         default=0.65, ge=-10.0, le=10.0, description="x at which the tool comes down", json_schema_extra={"unit": "m"}
     )
-    stiffness: float = Field(default=1e4, gt=0.0, le=1e8, json_schema_extra={"unit": "N/m"})
-    damping: float = Field(default=1e2, ge=0.0, le=1e8, json_schema_extra={"unit": "N·s/m"})
+    stiffness: float = Field(
+        default=1e4, gt=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N/m"}
+    )
+    damping: float = Field(
+        default=1e2, ge=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N·s/m"}
+    )
     friction: float = Field(
         default=0.25, ge=0.0, le=10.0, description="Coulomb coefficient", json_schema_extra={"unit": "1"}
     )

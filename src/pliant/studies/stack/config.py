@@ -70,7 +70,11 @@ class Joints(Config):
         default="none", description="what the robot compensates by itself"
     )
     velocity_filter: float = Field(
-        default=1.0, gt=0.0, le=1.0, description="share of a new sample in the low-passed joint velocity; 1: no filter"
+        default=1.0,
+        gt=0.0,
+        le=1.0,
+        description="share of a new sample in the low-passed joint velocity; 1: no filter",
+        json_schema_extra={"unit": "1"},
     )
 
 
@@ -80,20 +84,28 @@ class Wall(Config):
     x: float = Field(
         default=0.07, ge=-10.0, le=10.0, description="where it stops the tool", json_schema_extra={"unit": "m"}
     )
-    stiffness: float = Field(default=1e4, gt=0.0, le=1e8, json_schema_extra={"unit": "N/m"})
-    damping: float = Field(default=1e2, ge=0.0, le=1e8, json_schema_extra={"unit": "N s/m"})
-    friction: float = Field(default=0.1, ge=0.0, le=10.0, json_schema_extra={"unit": "1"})
+    stiffness: float = Field(
+        default=1e4, gt=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N/m"}
+    )
+    damping: float = Field(
+        default=1e2, ge=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N s/m"}
+    )
+    friction: float = Field(
+        default=0.1, ge=0.0, le=10.0, description="Coulomb coefficient", json_schema_extra={"unit": "1"}
+    )
 
 
 class RandomPushes(Config):
     """Random pushes on a frame, one after the other."""
 
-    frame: str = Field(default="elbow")
+    frame: str = Field(default="elbow", description="that is pushed")
     force: Annotated[tuple[_Force, _Force], AfterValidator(in_order)] = Field(
         default=(10.0, 30.0), description="least and most", json_schema_extra={"unit": "N"}
     )
-    duration: Span = Field(default=(0.2, 0.6), json_schema_extra={"unit": "s"})
-    gap: Span = Field(default=(0.1, 0.4), json_schema_extra={"unit": "s"})
+    duration: Span = Field(default=(0.2, 0.6), description="of a push, least and most", json_schema_extra={"unit": "s"})
+    gap: Span = Field(
+        default=(0.1, 0.4), description="between two pushes, least and most", json_schema_extra={"unit": "s"}
+    )
 
 
 class GainChanges(Config):
@@ -132,7 +144,7 @@ class StackCaseConfig(CaseConfig):
         description="control period, a whole multiple of the physics step",
         json_schema_extra={"unit": "s"},
     )
-    physics_step: float = Field(default=5e-4, gt=0.0, json_schema_extra={"unit": "s"})
+    physics_step: float = Field(default=5e-4, gt=0.0, description="of the simulation", json_schema_extra={"unit": "s"})
     path: StackPath = StackPath()
     joints: Joints = Joints()
     preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(
@@ -157,9 +169,9 @@ class StackCaseConfig(CaseConfig):
         " within ±",
         json_schema_extra={"unit": "1"},
     )
-    wall: Wall | None = None
-    pushes: RandomPushes | None = None
-    retuning: GainChanges | None = None
+    wall: Wall | None = Field(default=None, description="in the tool's way; none: without")
+    pushes: RandomPushes | None = Field(default=None, description="on a frame; none: without")
+    retuning: GainChanges | None = Field(default=None, description="while the robot moves; none: without")
 
     @property
     def clock(self) -> Mapping[str, float]:
