@@ -81,9 +81,8 @@ def _history(case: TaskCase, log: Log, signals: TaskSignals) -> Figure:
 def _map(case: TaskCase, signals: TaskSignals) -> Figure:
     """Force error as colour along the way on the surface, which is laid flat."""
     on = np.flatnonzero(signals.following)[::_EVERY]
-    places = signals.place[on] - case.tool.radius * signals.normal[on]
     error = signals.force[on] - signals.wanted[on]
-    return coloured_way(unrolled(places, signals.normal[on]), error, "force error, N", _title(case))
+    return coloured_way(unrolled(signals.place[on], signals.normal[on]), error, "force error, N", _title(case))
 
 
 def _title(case: TaskCase) -> str:

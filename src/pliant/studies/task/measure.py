@@ -36,9 +36,9 @@ class TaskSignals:
     limit: Array
     """(k, n) share of each joint's torque limit that was sent"""
     place: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    """(k, 3) m, of the tool"""
+    """(k, 3) m, of the true surface nearest to the tool"""
     normal: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    """(k, 3) of the true surface below it"""
+    """(k, 3) of the surface there"""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,8 @@ def signals_of(log: Log, frame: str, surface: SurfaceGeometry, torque_limits: Ar
     """The signals of a run. Args: surface: the true one."""
     time = log.time(f"truth/{frame}/wrench")
     place = log[f"truth/{frame}/position"]
-    normals = np.array([surface.normal(point) for point in place])
+    below = [surface.near(point) for point in place]
+    normals = np.array([near.normal for near in below])
     asked = log[f"reference/{frame}/wrench"][:, :3]
     off = place - log[f"reference/{frame}/position"]
     off = off - normals * np.sum(off * normals, axis=1, keepdims=True)
@@ -120,7 +121,7 @@ def signals_of(log: Log, frame: str, surface: SurfaceGeometry, torque_limits: Ar
         np.linalg.norm(off, axis=1),
         _in_phase(log, time, "follow"),
         np.abs(log["command/torque"]) / torque_limits,
-        place,
+        np.array([near.point for near in below]),
         normals,
     )
 
