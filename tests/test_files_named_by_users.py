@@ -17,7 +17,7 @@ TOML = {
     "nested tables": (b"[" + b".".join([b"a"] * 5000) + b"]\n", "nested"),
     "nested arrays": (b"a = " + b"[" * 5000 + b"]" * 5000, "nested"),
     "5000 digits": (b"a = " + b"1" * 5000, "is not TOML"),
-    "binary": (bytes(range(256)) * 20, "is not TOML"),
+    "binary": (bytes(range(256)) * 20, "is not UTF-8 text"),
 }
 
 

@@ -32,7 +32,8 @@ def test_no_fault_gets_past_the_guard() -> None:
     kept = {ledger: {name for name, book in count.books if book == ledger} for _, ledger in count.books}
     assert kept["stack"] == {name for name, entry in controllers().items() if entry.family in ("stack", "haptic")}
     layered = {of.controller for of in RUNS if of.changes}
-    assert kept["joint limits"] == kept["torque step"] == layered
+    assert kept["joint limits"] == layered
+    assert kept["torque step"] >= layered  # every study has that bound; a ledger is kept where it held back
 
 
 def test_the_count_sees_what_gets_out_without_a_guard(monkeypatch: pytest.MonkeyPatch) -> None:
