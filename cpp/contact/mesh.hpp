@@ -16,7 +16,8 @@ struct MeshPlace {
 
 // Triangles that share corners, all seen the same way round from outside. A point whose nearest place is on an edge of
 // one triangle alone (the rim of an open shell) is outside: beyond a rim there is no material.
-// The side is that of the angle-weighted normal (Baerentzen and Aanaes 2005), which is right for every closed mesh.
+// The side is that of the angle-weighted normal (Baerentzen and Aanaes 2005); tests compare it with the winding number
+// of drawn closed meshes.
 class Mesh {
  public:
   // vertices (nv, 3) m; triangles (nt, 3), every index below nv; no triangle without area.

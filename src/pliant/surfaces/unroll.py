@@ -12,9 +12,9 @@ _FIRST = 0.02  # of the way, which tells its first direction
 def unrolled(places: Array, normals: Array) -> Array:
     """(k, 2) m: the way as a pen would draw it on paper that rolls with it without slipping.
 
-    Lengths along the way are kept, and so is how it bends within the surface. On a plane, a cylinder or a cone places
-    keep their distances too, whatever way leads to them; on other surfaces, places where two parts of a way meet lie
-    apart by what the surface between them is curved both ways. The first axis is the way's first direction.
+    Lengths along the way are kept, and so is how it bends within the surface. On a plane and a cylinder places
+    keep their distances too; on other surfaces, places where two parts of a way meet lie apart by what the surface
+    between them is curved both ways. The first axis is the way's first direction.
 
     Args:
         places: (k, 3) m, close together.
