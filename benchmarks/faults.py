@@ -23,7 +23,7 @@ from benchmarks.fault_parts import (
     FaultySource,
 )
 from pliant import loop
-from pliant.experiments.config import merged
+from pliant.configuration import merged
 from pliant.experiments.registry import get_study
 from pliant.signals import Tick
 

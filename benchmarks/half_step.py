@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 
-from pliant.experiments.config import merged
+from pliant.configuration import merged
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
 

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from pliant import loop
-from pliant.experiments.config import merged
+from pliant.configuration import merged
 from pliant.experiments.registry import get_study
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.session import Session

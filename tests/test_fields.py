@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import inspect
 import pkgutil
 from collections.abc import Iterator
+from pathlib import Path
 from types import UnionType
 from typing import Any, get_args, get_origin
 
 import pytest
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 import pliant
 from pliant.configuration import Config
+from pliant.quantity import quantity, unit_of
 
 NOT_IMPORTED = ("_render_child", "templates", "__main__")
 BOUNDS = ("ge", "gt", "le", "lt")
@@ -59,6 +62,36 @@ CONFIGURATIONS = configurations()
 @pytest.mark.parametrize("kind", CONFIGURATIONS, ids=lambda kind: kind.__qualname__)
 def test_every_field_says_what_it_is(kind: type[Config]) -> None:
     assert faults(kind) == []
+
+
+def written_by_hand(source: str) -> list[int]:
+    """Lines that give a field's unit in a dictionary of their own instead of calling `quantity`."""
+    return [
+        node.value.lineno
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.keyword) and node.arg == "json_schema_extra"
+    ]
+
+
+def test_a_unit_is_given_in_one_way() -> None:
+    package = Path(str(pliant.__file__)).parent
+    found = {
+        path.relative_to(package).as_posix() for path in package.rglob("*.py") if written_by_hand(path.read_text())
+    }
+    assert found == {"quantity.py"}
+    assert written_by_hand('a = Field(1.0, json_schema_extra={"unit": "m"})') == [1]  # it would be noticed
+
+
+def test_a_quantity_keeps_its_limits_and_not_those_of_its_slider() -> None:
+    class Spring(Config):
+        stiffness: float = quantity(10.0, "N/m", "K", shown=(1.0, 20.0), ge=0.0)
+
+    field = Spring.model_fields["stiffness"]
+    assert (field.default, unit_of(field), field.description) == (10.0, "N/m", "K")
+    assert field.json_schema_extra == {"unit": "N/m", "minimum": 1.0, "maximum": 20.0}
+    assert Spring(stiffness=21.0).stiffness == 21.0
+    with pytest.raises(ValidationError):
+        Spring(stiffness=-1.0)
 
 
 def test_all_are_found_and_what_says_nothing_is_noticed() -> None:

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.configuration import merged
 from pliant.errors import ConfigError, PliantError
 from pliant.experiments.base import Experiment
-from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study
 from pliant.signals import Command, Measurement
 from pliant.telemetry import Recorder, RunInfo

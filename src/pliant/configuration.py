@@ -6,9 +6,9 @@ import sys
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, cast, get_args, get_origin
+from typing import Any, TypeVar, cast, get_args, get_origin
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
 
 from pliant.errors import ConfigError, OutputError, options
 from pliant.files import read_file
@@ -21,8 +21,8 @@ class Config(BaseModel):
     """Frozen values with a meaning: unknown keys are errors, defaults are checked too, every number is finite
     and at most `MOST` in size.
 
-    A field says what it means in `description` and its unit, and where it helps a sensible range, in
-    `json_schema_extra={"unit": ..., "minimum": ..., "maximum": ...}`: help texts and sliders are made from them.
+    A field with a unit is a `pliant.quantity.quantity`, any other one a `Field(default, description=...)`; help texts
+    and sliders are made from them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
@@ -33,13 +33,6 @@ class Config(BaseModel):
         if any(abs(number) > MOST for number in _numbers(value)):
             raise ValueError(f"a number of a configuration is at most {MOST:g} in size")
         return value
-
-
-def in_order(value: tuple[float, float]) -> tuple[float, float]:
-    """Validator of a range (least, most). Raises ValueError if it is the other way round."""
-    if value[0] > value[1]:
-        raise ValueError("a range is written [least, most]")
-    return value
 
 
 def _numbers(value: Any) -> Iterator[float]:
@@ -55,21 +48,6 @@ def _numbers(value: Any) -> Iterator[float]:
 
 C = TypeVar("C", bound=BaseModel)
 _MOST_DEPTH, _MOST_SHOWN, _MOST_BYTES = 32, 200, 1e6
-
-
-def quantity(default: Any, unit: str, description: str, **limits: Any) -> Any:
-    """A field with a unit. Args: default; unit; description; limits: pydantic's `ge`, `gt`, `le`, `lt`."""
-    return Field(default, description=f"{description} [{unit}]", json_schema_extra={"unit": unit}, **limits)
-
-
-def _in_order(value: tuple[float, float]) -> tuple[float, float]:
-    if value[0] > value[1]:
-        raise ValueError(f"a range goes from low to high, got {value}")
-    return value
-
-
-Range = Annotated[tuple[float, float], AfterValidator(_in_order)]
-"""lowest and highest value"""
 
 
 def read_toml(path: Path) -> dict[str, Any]:

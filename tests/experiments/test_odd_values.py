@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 
 from pliant import loop
+from pliant.configuration import merged
 from pliant.errors import ConfigError, PliantError
 from pliant.experiments.base import check_windows
-from pliant.experiments.config import assigned, merged
+from pliant.experiments.config import assigned
 from pliant.experiments.registry import get_study
 
 CASES = {"haptic": "online", "polishing": "ideal", "stack": "rest-plain"}

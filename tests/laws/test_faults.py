@@ -12,7 +12,7 @@ from benchmarks.fault_ledgers import Books
 from benchmarks.fault_parts import FREE_OR_NOT, Faults, FaultyPlant
 from benchmarks.faults import LAYERS, RUNS, Count, Spoiled, every_run, spoil
 from pliant import loop
-from pliant.experiments.config import merged
+from pliant.configuration import merged
 from pliant.experiments.registry import get_study
 from pliant.guard import Fault, Guard
 from pliant.signals import Command, Measurement, Tick

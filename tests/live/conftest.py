@@ -20,8 +20,8 @@ playwright = pytest.importorskip("playwright.sync_api", reason="playwright is no
 from playwright.sync_api import Browser  # noqa: E402
 from playwright.sync_api import Page as Tab  # noqa: E402
 
+from pliant.configuration import merged  # noqa: E402
 from pliant.experiments.base import CaseConfig  # noqa: E402
-from pliant.experiments.config import merged  # noqa: E402
 from pliant.experiments.registry import get_study  # noqa: E402
 from pliant.live.page.page import Page  # noqa: E402
 from pliant.live.server.launch import live_page  # noqa: E402

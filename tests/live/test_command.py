@@ -20,7 +20,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
 from pliant.cli.app import app
-from pliant.experiments.config import merged
+from pliant.configuration import merged
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
 from pliant.live.page.logged_scene import LoggedScene

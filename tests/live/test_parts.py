@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from pydantic import BaseModel, Field
+from pydantic import BaseModel
 
 from pliant.errors import ConfigError
 from pliant.live.link.mailbox import Mailbox
@@ -22,6 +22,7 @@ from pliant.live.page.form import parsed
 from pliant.live.page.pushes import PushControls
 from pliant.live.page.world_form import SceneForm
 from pliant.live.server.closed import _quiet
+from pliant.quantity import quantity
 from pliant.robot import Robot
 from pliant.signals import Command
 from pliant.simulation import Imperfections, MujocoPlant, Scene, Surface, floor
@@ -53,7 +54,7 @@ def test_a_reader_that_never_comes_costs_bounded_memory() -> None:
 
 
 class Inner(BaseModel):
-    gain: float = Field(2.0, ge=0.0, description="K", json_schema_extra={"unit": "N/m", "minimum": 0.0, "maximum": 9.0})
+    gain: float = quantity(2.0, "N/m", "K", shown=(0.0, 9.0), ge=0.0)
     mode: bool = False
     axes: tuple[float, float, float] = (1.0, 2.0, 3.0)
     limit: float | None = None

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.configuration import merged
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study
 from pliant.live.link.messages import Aim, Flow, Message, Note, Parameters, PushNow
 from pliant.live.loop.pace import Pace

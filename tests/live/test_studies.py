@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pliant import loop
-from pliant.experiments.config import merged
+from pliant.configuration import merged
 from pliant.experiments.registry import get_study, study_names
 from pliant.live.link.messages import Aim, Message, Note, Parameters, Ready
 from pliant.live.loop.pace import Pace

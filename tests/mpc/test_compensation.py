@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pliant.configuration import merged
 from pliant.environment import Environment
 from pliant.errors import ConfigError, SignalError
-from pliant.experiments.config import merged
 from pliant.mpc import CONTROLLERS, Compensation, ForceFeedbackMpc, MpcController, OffsetFreeMpc
 from pliant.mpc.config import Bounds
 from pliant.signals import Estimate

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pliant import _mpc
-from pliant.experiments.config import merged
+from pliant.configuration import merged
 from pliant.mpc.defaults import ForceFeedbackMpc
 from pliant.mpc.noisy_loop import BenchCase, NoisyLoop
 from pliant.mpc.registry import CONTROLLERS

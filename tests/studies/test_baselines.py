@@ -6,9 +6,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from pliant.configuration import merged
 from pliant.controllers.registry import CONTROLLERS
 from pliant.errors import ConfigError
-from pliant.experiments.config import merged
 from pliant.experiments.model_error import with_mass_error
 from pliant.experiments.registry import get_study
 from pliant.robot import Robot

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from pliant.configuration import merged
 from pliant.experiments.base import Result
-from pliant.experiments.config import merged
 from pliant.experiments.runner import run_case
 from pliant.studies.haptic import STUDY
 from pliant.studies.haptic.config import Check, HapticCaseConfig

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.configuration import merged
 from pliant.controllers.profiles import Shape
 from pliant.errors import ConfigError
-from pliant.experiments.config import merged
 from pliant.spatial import Array
 from pliant.studies.haptic import STUDY
 from pliant.studies.haptic.config import HapticCaseConfig

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.configuration import merged
 from pliant.errors import ConfigError
-from pliant.experiments.config import merged
 from pliant.experiments.runner import run_case
 from pliant.signals import Tick
 from pliant.simulation.imperfections.config import Imperfections

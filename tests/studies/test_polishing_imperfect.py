@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from pliant.cli.paper_tables import paper_tables
+from pliant.configuration import merged
 from pliant.errors import ConfigError
 from pliant.experiments.base import Result
-from pliant.experiments.config import merged
 from pliant.experiments.runner import run_case
 from pliant.experiments.summarise import summarised
 from pliant.simulation import Imperfections

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.configuration import merged
 from pliant.errors import ConfigError
 from pliant.experiments.base import Result
-from pliant.experiments.config import merged
 from pliant.experiments.summarise import summarised
 from pliant.references.postures.posture import UnreachableError
 from pliant.studies.stack import STUDY

@@ -12,11 +12,11 @@ from typing import Literal
 
 import numpy as np
 
+from pliant.configuration import Config
 from pliant.errors import RunFailedError
 from pliant.experiments import registry
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
 from pliant.experiments.case import Case, seeded
-from pliant.experiments.config import Config
 from pliant.experiments.tuning import Range, Tuning
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
 from pliant.robot import Robot

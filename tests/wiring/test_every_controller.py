@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from pliant import loop
+from pliant.configuration import merged
 from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed
 from pliant.experiments.base import Experiment
-from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
 from pliant.robot import Robot

@@ -24,10 +24,10 @@ MINE = textwrap.dedent(
 
     import numpy as np
     import pinocchio as pin
-    from pydantic import Field
 
     from pliant.entries import ControllerConfig
     from pliant.interfaces import ChannelUnit, Controller, Needs
+    from pliant.quantity import quantity
     from pliant.signals import Command
     from pliant.telemetry.summary import Metric
 
@@ -37,7 +37,7 @@ MINE = textwrap.dedent(
 
         class Config(ControllerConfig):
             frame: str = "flange"
-            stiffness: float = Field(default=500.0, description="of the spring", json_schema_extra={"unit": "N/m"})
+            stiffness: float = quantity(500.0, "N/m", "of the spring")
 
         channels = {"spring/force": ChannelUnit("N")}
 

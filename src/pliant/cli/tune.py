@@ -16,7 +16,8 @@ from rich.table import Table
 from pliant import __version__
 from pliant.cli.choose import study_folder
 from pliant.cli.progress import count_bar
-from pliant.experiments.config import assigned, merged
+from pliant.configuration import merged
+from pliant.experiments.config import assigned
 from pliant.experiments.lock import locked
 from pliant.experiments.open_pool import open_pool
 from pliant.experiments.parquet import write_parquet

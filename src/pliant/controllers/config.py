@@ -13,6 +13,7 @@ from pliant.controllers.profiles import Shape
 from pliant.controllers.task import FrameTask
 from pliant.entries import ControllerConfig
 from pliant.errors import PliantError
+from pliant.quantity import quantity
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
 
@@ -24,50 +25,33 @@ PerAxis = NotNegative | tuple[NotNegative, NotNegative, NotNegative]
 class TranslationConfig(ControllerConfig):
     """Impedance of the three positions."""
 
-    stiffness: PerAxis = Field(
-        default=2500.0,
-        description="K_0: force per error near the target; x, y, z or one for all",
-        json_schema_extra={"unit": "N/m", "minimum": 0.0, "maximum": 30000.0},
+    stiffness: PerAxis = quantity(
+        2500.0, "N/m", "K_0: force per error near the target; x, y, z or one for all", shown=(0.0, 30000.0)
     )
-    force_max: PerAxis = Field(
-        default=100.0,
-        description="F_max: bound of the commanded force, however large the error; an impact can be harder",
-        json_schema_extra={"unit": "N", "minimum": 0.0, "maximum": 300.0},
+    force_max: PerAxis = quantity(
+        100.0,
+        "N",
+        "F_max: bound of the commanded force, however large the error; an impact can be harder",
+        shown=(0.0, 300.0),
     )
-    range: PerAxis = Field(
-        default=0.06,
-        description="x_b: error at which F_max is reached",
-        json_schema_extra={"unit": "m", "minimum": 0.001, "maximum": 0.5},
-    )
-    linear_range: PerAxis | None = Field(
-        default=None,
-        description="x_0: end of the linear part; none: 0.95 x_b, or where 0.95 F_max is reached",
-        json_schema_extra={"unit": "m", "minimum": 0.0, "maximum": 0.5},
+    range: PerAxis = quantity(0.06, "m", "x_b: error at which F_max is reached", shown=(0.001, 0.5))
+    linear_range: PerAxis | None = quantity(
+        None, "m", "x_0: end of the linear part; none: 0.95 x_b, or where 0.95 F_max is reached", shown=(0.0, 0.5)
     )
 
 
 class RotationConfig(ControllerConfig):
     """Impedance of the three rotations, about the world's axes."""
 
-    stiffness: PerAxis = Field(
-        default=60.0,
-        description="K_0: moment per angle near the target; x, y, z or one for all",
-        json_schema_extra={"unit": "N·m/rad", "minimum": 0.0, "maximum": 500.0},
+    stiffness: PerAxis = quantity(
+        60.0, "N·m/rad", "K_0: moment per angle near the target; x, y, z or one for all", shown=(0.0, 500.0)
     )
-    force_max: PerAxis = Field(
-        default=12.0,
-        description="F_max: bound of the moment about each axis, at any angle",
-        json_schema_extra={"unit": "N·m", "minimum": 0.0, "maximum": 150.0},
+    force_max: PerAxis = quantity(
+        12.0, "N·m", "F_max: bound of the moment about each axis, at any angle", shown=(0.0, 150.0)
     )
-    range: PerAxis = Field(
-        default=0.30,
-        description="x_b: angle at which F_max is reached",
-        json_schema_extra={"unit": "rad", "minimum": 0.01, "maximum": 3.0},
-    )
-    linear_range: PerAxis | None = Field(
-        default=None,
-        description="x_0: end of the linear part; none: 0.95 x_b, or where 0.95 F_max is reached",
-        json_schema_extra={"unit": "rad", "minimum": 0.0, "maximum": 3.0},
+    range: PerAxis = quantity(0.30, "rad", "x_b: angle at which F_max is reached", shown=(0.01, 3.0))
+    linear_range: PerAxis | None = quantity(
+        None, "rad", "x_0: end of the linear part; none: 0.95 x_b, or where 0.95 F_max is reached", shown=(0.0, 3.0)
     )
 
 
@@ -109,29 +93,15 @@ class FrameTaskConfig(ControllerConfig):
 class PhaseConfig(ControllerConfig):
     """How an axis decides between divergence and convergence. The defaults serve noise-free and noisy robots alike."""
 
-    rate_cutoff: float = Field(
-        default=80.0, gt=0.0, description="low-pass on the rate of the error", json_schema_extra={"unit": "Hz"}
+    rate_cutoff: float = quantity(80.0, "Hz", "low-pass on the rate of the error", gt=0.0)
+    rate_floor: float = quantity(0.5e-3, "m/s", "rates below it tell no direction", gt=0.0)
+    rate_floor_angular: float = quantity(0.5e-3, "rad/s", "rates below it tell no direction", gt=0.0)
+    noise_time: float = quantity(0.2, "s", "time over which the noise is learned", gt=0.0)
+    hold_limit: float = quantity(
+        0.030, "s", "how long a phase is held while the rate tells nothing; then the axis diverges", ge=0.0
     )
-    rate_floor: float = Field(
-        default=0.5e-3, gt=0.0, description="rates below it tell no direction", json_schema_extra={"unit": "m/s"}
-    )
-    rate_floor_angular: float = Field(
-        default=0.5e-3, gt=0.0, description="rates below it tell no direction", json_schema_extra={"unit": "rad/s"}
-    )
-    noise_time: float = Field(
-        default=0.2, gt=0.0, description="time over which the noise is learned", json_schema_extra={"unit": "s"}
-    )
-    hold_limit: float = Field(
-        default=0.030,
-        ge=0.0,
-        description="how long a phase is held while the rate tells nothing; then the axis diverges",
-        json_schema_extra={"unit": "s"},
-    )
-    blend_time: float = Field(
-        default=0.008,
-        ge=0.0,
-        description="time over which the force steps up where a convergence ends; 0: at once",
-        json_schema_extra={"unit": "s"},
+    blend_time: float = quantity(
+        0.008, "s", "time over which the force steps up where a convergence ends; 0: at once", ge=0.0
     )
 
     def settings(self) -> PhaseSettings:
@@ -147,17 +117,19 @@ class StackConfig(ControllerConfig):
     )
     law: Law = Field(default=Law.CAPPED, description="force on the way back to the target")
     phases: PhaseConfig = Field(default=PhaseConfig(), description="thresholds of the phase logic")
-    joint_damping: float = Field(
-        default=0.0,
+    joint_damping: float = quantity(
+        0.0,
+        "N·m s/rad",
+        "of every joint, added by the controller; what a plain spring needs to come to rest",
+        shown=(0.0, 20.0),
         ge=0.0,
-        description="of every joint, added by the controller; what a plain spring needs to come to rest",
-        json_schema_extra={"unit": "N·m s/rad", "minimum": 0.0, "maximum": 20.0},
     )
-    force_damping: float = Field(
-        default=0.0,
+    force_damping: float = quantity(
+        0.0,
+        "N·s/m",
+        "of a frame's motion along the force that is asked of it; damps the contact and not the path",
+        shown=(0.0, 1000.0),
         ge=0.0,
-        description="of a frame's motion along the force that is asked of it; damps the contact and not the path",
-        json_schema_extra={"unit": "N·s/m", "minimum": 0.0, "maximum": 1000.0},
     )
     gravity_compensation: bool = Field(
         default=False, description="add the model's gravity torque; off where the robot compensates itself"
@@ -184,29 +156,17 @@ class OperationalSpaceConfig(ControllerConfig):
     """Khatib's operational-space controller with a dynamically consistent posture."""
 
     frame: str = Field(default="flange", description="frame of the robot that follows the first task")
-    stiffness: float = Field(
-        default=400.0,
-        ge=0.0,
-        description="acceleration per position error",
-        json_schema_extra={"unit": "1/s²", "minimum": 0.0, "maximum": 4000.0},
+    stiffness: float = quantity(400.0, "1/s²", "acceleration per position error", shown=(0.0, 4000.0), ge=0.0)
+    damping_ratio: float = quantity(1.0, "1", "1 is critical", shown=(0.0, 2.0), ge=0.0)
+    posture_stiffness: float = quantity(
+        50.0, "1/s²", "joint acceleration per joint error, in what the task leaves free", shown=(0.0, 400.0), ge=0.0
     )
-    damping_ratio: float = Field(
-        default=1.0,
-        ge=0.0,
-        description="1 is critical",
-        json_schema_extra={"unit": "1", "minimum": 0.0, "maximum": 2.0},
-    )
-    posture_stiffness: float = Field(
-        default=50.0,
-        ge=0.0,
-        description="joint acceleration per joint error, in what the task leaves free",
-        json_schema_extra={"unit": "1/s²", "minimum": 0.0, "maximum": 400.0},
-    )
-    singularity_damping: float = Field(
-        default=0.02,
+    singularity_damping: float = quantity(
+        0.02,
+        "kg^-1/2",
+        "δ in Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹: bounds the forces near singularities, costs accuracy",
+        shown=(0.001, 1.0),
         gt=0.0,
-        description="δ in Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹: bounds the forces near singularities, costs accuracy",
-        json_schema_extra={"unit": "kg^-1/2", "minimum": 0.001, "maximum": 1.0},
     )
     compensation: Literal["none", "coriolis", "gravity+coriolis"] = Field(
         default="gravity+coriolis",

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydantic import Field
 
 from pliant.configuration import Config
 from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
+from pliant.quantity import quantity
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
@@ -23,18 +23,11 @@ _UNLIMITED = 100.0  # N·m or N, of a joint whose file gives no torque limit
 class JointLimitsConfig(Config):
     """A spring at each end of each joint's range."""
 
-    margin: float = Field(
-        default=math.radians(10.0),
-        gt=0.0,
-        description="how far before a position limit its spring begins",
-        json_schema_extra={"unit": "rad", "minimum": 0.01, "maximum": 0.5},
+    margin: float = quantity(
+        math.radians(10.0), "rad", "how far before a position limit its spring begins", shown=(0.01, 0.5), gt=0.0
     )
-    share: float = Field(
-        default=0.5,
-        gt=0.0,
-        le=1.0,
-        description="torque of the spring at the limit and beyond, as a share of the joint's torque limit",
-        json_schema_extra={"unit": "1"},
+    share: float = quantity(
+        0.5, "1", "torque of the spring at the limit and beyond, as a share of the joint's torque limit", gt=0.0, le=1.0
     )
 
 

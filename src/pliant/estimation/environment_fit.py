@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from pydantic import Field
 
-from pliant.configuration import Config, quantity
+from pliant.configuration import Config
 from pliant.environment import Environment
 from pliant.estimation.filters import Butterworth, Memory
 from pliant.frozen import changed
+from pliant.quantity import quantity
 from pliant.spatial import Array
 
 

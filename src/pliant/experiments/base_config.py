@@ -8,10 +8,11 @@ from typing import Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from pliant.configuration import Config
 from pliant.controllers.joint_limits import JointLimitsConfig
 from pliant.errors import ConfigError, PliantError
-from pliant.experiments.config import Config
 from pliant.experiments.own_metrics import find_metric
+from pliant.quantity import quantity
 from pliant.robots.rotors import RotorInertia
 from pliant.tasks.estimation import Estimation
 
@@ -40,15 +41,13 @@ class CaseConfig(Config):
     case: str = Field(description="name of the case")
     controller: str = Field(description="name of the controller")
     robot: str = Field(description="catalogue name, or path of a URDF or MJCF file")
-    locked: dict[str, float] | None = Field(
-        default=None,
-        description="joint → angle at which it is fixed, replaced as a whole; none: what the catalogue locks; {}: none",
-        json_schema_extra={"unit": "rad"},
+    locked: dict[str, float] | None = quantity(
+        None, "rad", "joint → angle at which it is fixed, replaced as a whole; none: what the catalogue locks; {}: none"
     )
     rotor_inertia: RotorInertia = None
     estimation: Estimation = Estimation()
     seed: int = Field(default=0, ge=0, description="of every random draw")
-    duration: float = Field(gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    duration: float = quantity(..., "s", "length of the run", gt=0.0)
     joint_limits: JointLimitsConfig | None = Field(
         default=None, description="springs that keep the joints off their limits, round any controller; none: without"
     )

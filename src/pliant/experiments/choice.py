@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pliant.configuration import merged, read_toml
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import CaseConfig, Study
-from pliant.experiments.config import merged, read_toml
 from pliant.experiments.registry import get_study, study_of_task
 from pliant.experiments.repeat import from_config, from_log, is_whole
 from pliant.tasks.task import Task

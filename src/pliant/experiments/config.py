@@ -1,14 +1,12 @@
-"""Typed configurations, as `pliant.configuration` has them."""
+"""What a user's `--set` may change of a case."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Any
 
-from pliant.configuration import Config, merged, parse_assignments, read_toml, validated
+from pliant.configuration import parse_assignments
 from pliant.errors import ConfigError
-
-__all__ = ["Config", "assigned", "merged", "parse_assignments", "read_toml", "validated"]
 
 IDENTITY = ("case", "study", "variant")
 """keys that say which run it is: tables and files are named after them"""

@@ -13,6 +13,7 @@ from pydantic_core import to_jsonable_python
 
 from pliant.entries import ControllerConfig
 from pliant.experiments.choice import Choice
+from pliant.quantity import unit_of
 from pliant.wiring.registry import find_controller
 
 _LONGEST = 60  # characters
@@ -94,13 +95,8 @@ def _leaves(
                 if isinstance(inner, BaseModel):
                     yield from _leaves(inner, None, (*path, str(key)))
         else:
-            yield path, value, _unit(about), usual
+            yield path, value, unit_of(about), usual
 
 
 def _default(about: FieldInfo) -> Any:
     return _UNKNOWN if about.is_required() else about.get_default(call_default_factory=True, validated_data={})
-
-
-def _unit(about: FieldInfo) -> str:
-    extra = about.json_schema_extra
-    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""

@@ -6,9 +6,9 @@ import importlib
 from collections.abc import Mapping
 from typing import Any
 
+from pliant.configuration import validated
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import CaseConfig, Study
-from pliant.experiments.config import validated
 from pliant.tasks.files import catalogue
 from pliant.tasks.task import Task
 

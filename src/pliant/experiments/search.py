@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from pliant.configuration import merged
 from pliant.errors import ConfigError, MissingExtraError, options
 from pliant.experiments.base import CaseConfig, Result, Study
-from pliant.experiments.config import merged
 from pliant.experiments.pool import Pool, in_this_process
 from pliant.experiments.results import key
 from pliant.experiments.sweep import sweep

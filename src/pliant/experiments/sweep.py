@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pliant.configuration import merged
 from pliant.errors import ConfigError, PliantError, told
 from pliant.experiments.base import CaseConfig, Result, check_windows
-from pliant.experiments.config import assigned, merged
+from pliant.experiments.config import assigned
 from pliant.experiments.pool import Lost, Pool, in_this_process
 from pliant.experiments.registry import get_study, study_of_run
 from pliant.experiments.results import Request, Run, key

@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 from pliant.entries import ControllerConfig
 from pliant.mpc.costs import Costs, PhaseCosts
 from pliant.mpc.models import MODELS, Kind, PredictiveModel
+from pliant.quantity import quantity
 
 Axes = Literal["local", "world", "surface"]
 
@@ -26,25 +27,19 @@ class Contact(ControllerConfig):
     normal: tuple[float, float, float] = Field(
         default=(0.0, 0.0, 1.0), description="outward normal of the surface in the world, for axes 'surface'"
     )
-    stiffness: tuple[float, ...] = Field(
-        default=(1e3,), description="K per axis; the last one repeats", json_schema_extra={"unit": "N/m, N·m/rad"}
-    )
-    damping: tuple[float, ...] = Field(
-        default=(1e2,), description="B per axis; the last one repeats", json_schema_extra={"unit": "N·s/m, N·m·s/rad"}
-    )
+    stiffness: tuple[float, ...] = quantity((1e3,), "N/m, N·m/rad", "K per axis; the last one repeats")
+    damping: tuple[float, ...] = quantity((1e2,), "N·s/m, N·m·s/rad", "B per axis; the last one repeats")
     integrator: Literal["euler", "exponential"] = Field(
         default="euler", description="of the force: 'euler' [FFMPC] eq. 24, 'exponential' for stiff contacts"
     )
-    friction: float | None = Field(
-        default=None,
+    friction: float | None = quantity(
+        None,
+        "1",
+        "Coulomb coefficient of the predicted contact, force feedback in dimension 3, 6; None: it sticks",
         gt=0.0,
-        description="Coulomb coefficient of the predicted contact, force feedback in dimension 3, 6; None: it sticks",
-        json_schema_extra={"unit": "1"},
     )
-    baumgarte: tuple[float, float] = Field(
-        default=(0.0, 0.0),
-        description="rigid contact: position and velocity gain of Baumgarte",
-        json_schema_extra={"unit": "1/s², 1/s"},
+    baumgarte: tuple[float, float] = quantity(
+        (0.0, 0.0), "1/s², 1/s", "rigid contact: position and velocity gain of Baumgarte"
     )
 
 
@@ -52,15 +47,8 @@ class Bounds(ControllerConfig):
     """Inequalities. With none of them set the solver takes its faster path."""
 
     torque: bool = Field(default=False, description="keep the control within the robot's torque limits")
-    force_max: float | None = Field(
-        default=None, gt=0.0, description="0 ≤ normal force ≤ force_max", json_schema_extra={"unit": "N"}
-    )
-    friction: float | None = Field(
-        default=None,
-        gt=0.0,
-        description="cone: tangential ≤ friction · normal, dimension 3, 6",
-        json_schema_extra={"unit": "1"},
-    )
+    force_max: float | None = quantity(None, "N", "0 ≤ normal force ≤ force_max", gt=0.0)
+    friction: float | None = quantity(None, "1", "cone: tangential ≤ friction · normal, dimension 3, 6", gt=0.0)
 
     @property
     def any(self) -> bool:
@@ -74,33 +62,19 @@ class Compensation(ControllerConfig):
         default=False,
         description="take the estimated disturbance out of the torque, and count it in the prediction over the delay",
     )
-    sensing_delay: float = Field(
-        default=0.0, ge=0.0, le=0.1, description="age of a reading", json_schema_extra={"unit": "s"}
-    )
-    computation_delay: float = Field(
-        default=0.0,
+    sensing_delay: float = quantity(0.0, "s", "age of a reading", ge=0.0, le=0.1)
+    computation_delay: float = quantity(0.0, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
+    averaging: float = quantity(
+        0.0,
+        "s",
+        "the torque that is sent is the mean over this time; it removes what rings in the drives",
         ge=0.0,
         le=0.1,
-        description="from a reading to the effect of its command",
-        json_schema_extra={"unit": "s"},
     )
-    averaging: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=0.1,
-        description="the torque that is sent is the mean over this time; it removes what rings in the drives",
-        json_schema_extra={"unit": "s"},
+    force_integral: float = quantity(
+        0.0, "1/s", "k_i: the force reference is shifted by k_i ∫ (reference − measured)", ge=0.0, le=200.0
     )
-    force_integral: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=200.0,
-        description="k_i: the force reference is shifted by k_i ∫ (reference − measured)",
-        json_schema_extra={"unit": "1/s"},
-    )
-    force_shift_max: float = Field(
-        default=20.0, gt=0.0, description="largest shift of the force reference", json_schema_extra={"unit": "N"}
-    )
+    force_shift_max: float = quantity(20.0, "N", "largest shift of the force reference", gt=0.0)
     environment: bool = Field(
         default=False, description="let the estimated stiffness of the environment replace contact.stiffness"
     )
@@ -121,28 +95,14 @@ class MpcConfig(ControllerConfig):
     kind: Kind = Field(default="force_feedback", description="which model predicts")
     frame: str = Field(default="tool", description="frame whose pose is tracked")
     horizon: int = Field(default=5, ge=1, le=200, description="N, running nodes")
-    dt: float = Field(default=3e-3, gt=0.0, le=0.1, description="step of the horizon", json_schema_extra={"unit": "s"})
-    period: float = Field(
-        default=2e-3, gt=0.0, le=0.1, description="time from solve to solve", json_schema_extra={"unit": "s"}
-    )
+    dt: float = quantity(3e-3, "s", "step of the horizon", gt=0.0, le=0.1)
+    period: float = quantity(2e-3, "s", "time from solve to solve", gt=0.0, le=0.1)
     max_iterations: int = Field(default=8, ge=1, le=1000, description="SQP steps per solve")
-    tolerance: float = Field(
-        default=1e-4,
-        gt=0.0,
-        description="KKT residual at which a solve ends",
-        json_schema_extra={"unit": "that of the cost's slope"},
-    )
-    time_budget: float | None = Field(
-        default=None, gt=0.0, description="wall time after which no iteration starts", json_schema_extra={"unit": "s"}
-    )
-    deadline: float | None = Field(
-        default=None, gt=0.0, description="wall time of a solve that counts as missed", json_schema_extra={"unit": "s"}
-    )
-    regularisation: float = Field(
-        default=1e-9,
-        ge=0.0,
-        description="added to the diagonal of the Hessian",
-        json_schema_extra={"unit": "that of the cost's curvature"},
+    tolerance: float = quantity(1e-4, "that of the cost's slope", "KKT residual at which a solve ends", gt=0.0)
+    time_budget: float | None = quantity(None, "s", "wall time after which no iteration starts", gt=0.0)
+    deadline: float | None = quantity(None, "s", "wall time of a solve that counts as missed", gt=0.0)
+    regularisation: float = quantity(
+        1e-9, "that of the cost's curvature", "added to the diagonal of the Hessian", ge=0.0
     )
     between: Literal["hold", "riccati"] = Field(
         default="hold", description="between two solves: hold the torque, or the solver's own state feedback"
@@ -161,17 +121,10 @@ class MpcConfig(ControllerConfig):
         default=True, description="velocity cost about the task's velocity; false: about zero, as in [FFMPC] eq. 25.5"
     )
     contact: Contact = Contact()
-    torque_bandwidth: float = Field(
-        default=50.0, gt=0.0, description="f_c of the actuation in torque feedback", json_schema_extra={"unit": "Hz"}
-    )
-    fallback_damping: float = Field(
-        default=5.0, ge=0.0, description="joint damping when no plan is left", json_schema_extra={"unit": "N·m·s/rad"}
-    )
-    max_gap: float = Field(
-        default=10.0,
-        gt=0.0,
-        description="Σ|f(x, u) − x⁺| over states and nodes above which a solution is not used",
-        json_schema_extra={"unit": "that of the states"},
+    torque_bandwidth: float = quantity(50.0, "Hz", "f_c of the actuation in torque feedback", gt=0.0)
+    fallback_damping: float = quantity(5.0, "N·m·s/rad", "joint damping when no plan is left", ge=0.0)
+    max_gap: float = quantity(
+        10.0, "that of the states", "Σ|f(x, u) − x⁺| over states and nodes above which a solution is not used", gt=0.0
     )
     bounds: Bounds = Bounds()
     compensation: Compensation = Compensation()

@@ -11,35 +11,28 @@ from pydantic import Field, field_validator
 
 from pliant.entries import ControllerConfig
 from pliant.errors import ConfigError
+from pliant.quantity import quantity
 from pliant.spatial import Array
 
 
 class Term(ControllerConfig):
     """One quadratic cost term."""
 
-    weight: float = Field(
-        default=0.0,
-        ge=0.0,
-        description="scalar weight w of the running nodes",
-        json_schema_extra={"unit": "1/(unit of the term)²"},
-    )
+    weight: float = quantity(0.0, "1/(unit of the term)²", "scalar weight w of the running nodes", ge=0.0)
     activation: tuple[float, ...] = Field(
         default=(1.0,),
         min_length=1,
         description="a per component, squared; the last one counts for all that follow",
     )
-    terminal: float | None = Field(
-        default=None,
-        ge=0.0,
-        description="w of the last node; None: as the running ones",
-        json_schema_extra={"unit": "1/(unit of the term)²"},
+    terminal: float | None = quantity(
+        None, "1/(unit of the term)²", "w of the last node; None: as the running ones", ge=0.0
     )
     terminal_times_dt: bool = Field(default=True, description="whether the last node's weight is multiplied by dt too")
-    per_node: float | None = Field(
-        default=None,
+    per_node: float | None = quantity(
+        None,
+        "1/(unit of the term)²",
+        "the weight grows along the horizon: node k has min(per_node · k, weight)",
         gt=0.0,
-        description="the weight grows along the horizon: node k has min(per_node · k, weight)",
-        json_schema_extra={"unit": "1/(unit of the term)²"},
     )
 
     @field_validator("activation")
@@ -82,83 +75,35 @@ class Term(ControllerConfig):
 class Costs(ControllerConfig):
     """The cost terms that count in every phase unless the phase has its own; the unit is that of the weight."""
 
-    posture: Term = Field(
-        default=Term(), description="joint positions about the posture reference", json_schema_extra={"unit": "1/rad²"}
-    )
-    joint_velocity: Term = Field(
-        default=Term(), description="joint velocities about zero", json_schema_extra={"unit": "s²/rad²"}
-    )
-    torque: Term = Field(
-        default=Term(),
-        description="torque about g(q) − Jᵀλ; in torque feedback the state τ",
-        json_schema_extra={"unit": "1/(N·m)²"},
-    )
-    unfiltered_torque: Term = Field(
-        default=Term(), description="w about g(q) − Jᵀλ, torque feedback only", json_schema_extra={"unit": "1/(N·m)²"}
-    )
-    translation: Term = Field(
-        default=Term(), description="tool position, world axes", json_schema_extra={"unit": "1/m²"}
-    )
-    rotation: Term = Field(
-        default=Term(), description="tool orientation log(R_refᵀ R)", json_schema_extra={"unit": "1/rad²"}
-    )
-    velocity: Term = Field(
-        default=Term(), description="tool twist, world axes", json_schema_extra={"unit": "s²/m², s²/rad²"}
-    )
-    force: Term = Field(default=Term(), description="contact force, contact axes", json_schema_extra={"unit": "1/N²"})
-    force_rate: Term = Field(
-        default=Term(),
-        description="rate of the contact force, force feedback only",
-        json_schema_extra={"unit": "s²/N²"},
-    )
+    posture: Term = quantity(Term(), "1/rad²", "joint positions about the posture reference")
+    joint_velocity: Term = quantity(Term(), "s²/rad²", "joint velocities about zero")
+    torque: Term = quantity(Term(), "1/(N·m)²", "torque about g(q) − Jᵀλ; in torque feedback the state τ")
+    unfiltered_torque: Term = quantity(Term(), "1/(N·m)²", "w about g(q) − Jᵀλ, torque feedback only")
+    translation: Term = quantity(Term(), "1/m²", "tool position, world axes")
+    rotation: Term = quantity(Term(), "1/rad²", "tool orientation log(R_refᵀ R)")
+    velocity: Term = quantity(Term(), "s²/m², s²/rad²", "tool twist, world axes")
+    force: Term = quantity(Term(), "1/N²", "contact force, contact axes")
+    force_rate: Term = quantity(Term(), "s²/N²", "rate of the contact force, force feedback only")
 
 
 class PhaseCosts(ControllerConfig):
     """What is different in one phase of a task. Terms that are None are the common ones."""
 
     contact: bool = Field(default=False, description="whether the model is in contact")
-    posture: Term | None = Field(
-        default=None,
-        description="joint positions about the posture reference; none: the common one",
-        json_schema_extra={"unit": "1/rad²"},
+    posture: Term | None = quantity(None, "1/rad²", "joint positions about the posture reference; none: the common one")
+    joint_velocity: Term | None = quantity(None, "s²/rad²", "joint velocities about zero; none: the common one")
+    torque: Term | None = quantity(
+        None, "1/(N·m)²", "torque about g(q) − Jᵀλ; in torque feedback the state τ; none: the common one"
     )
-    joint_velocity: Term | None = Field(
-        default=None,
-        description="joint velocities about zero; none: the common one",
-        json_schema_extra={"unit": "s²/rad²"},
+    unfiltered_torque: Term | None = quantity(
+        None, "1/(N·m)²", "w about g(q) − Jᵀλ, torque feedback only; none: the common one"
     )
-    torque: Term | None = Field(
-        default=None,
-        description="torque about g(q) − Jᵀλ; in torque feedback the state τ; none: the common one",
-        json_schema_extra={"unit": "1/(N·m)²"},
-    )
-    unfiltered_torque: Term | None = Field(
-        default=None,
-        description="w about g(q) − Jᵀλ, torque feedback only; none: the common one",
-        json_schema_extra={"unit": "1/(N·m)²"},
-    )
-    translation: Term | None = Field(
-        default=None, description="tool position, world axes; none: the common one", json_schema_extra={"unit": "1/m²"}
-    )
-    rotation: Term | None = Field(
-        default=None,
-        description="tool orientation log(R_refᵀ R); none: the common one",
-        json_schema_extra={"unit": "1/rad²"},
-    )
-    velocity: Term | None = Field(
-        default=None,
-        description="tool twist, world axes; none: the common one",
-        json_schema_extra={"unit": "s²/m², s²/rad²"},
-    )
-    force: Term | None = Field(
-        default=None,
-        description="contact force, contact axes; none: the common one",
-        json_schema_extra={"unit": "1/N²"},
-    )
-    force_rate: Term | None = Field(
-        default=None,
-        description="rate of the contact force, force feedback only; none: the common one",
-        json_schema_extra={"unit": "s²/N²"},
+    translation: Term | None = quantity(None, "1/m²", "tool position, world axes; none: the common one")
+    rotation: Term | None = quantity(None, "1/rad²", "tool orientation log(R_refᵀ R); none: the common one")
+    velocity: Term | None = quantity(None, "s²/m², s²/rad²", "tool twist, world axes; none: the common one")
+    force: Term | None = quantity(None, "1/N²", "contact force, contact axes; none: the common one")
+    force_rate: Term | None = quantity(
+        None, "s²/N²", "rate of the contact force, force feedback only; none: the common one"
     )
 
     def over(self, common: Costs) -> Costs:

@@ -14,6 +14,7 @@ import pinocchio as pin
 from pydantic import Field
 
 from pliant.errors import ConfigError, options
+from pliant.quantity import quantity
 from pliant.robots.description import is_revolute
 from pliant.spatial import Array
 
@@ -21,10 +22,11 @@ Rotors = float | tuple[float, ...] | Literal["assumed"]
 """kg m² at every joint or at each of all joints of the file; "assumed": from their torque limits"""
 RotorInertia = Annotated[
     Annotated[float, Field(ge=0.0, le=1e3)] | Literal["assumed"] | None,
-    Field(
-        description="the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: that of"
+    quantity(
+        ...,
+        "kg m²",
+        "the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: that of"
         " the catalogue or of the file",
-        json_schema_extra={"unit": "kg m²"},
     ),
 ]
 """a key of configurations"""

@@ -8,10 +8,11 @@ import numpy as np
 from pydantic import Field
 
 from pliant import loop
+from pliant.configuration import Config
 from pliant.errors import RobotError, RunFailedError, options
 from pliant.estimation import DirectEstimator, ToolIdentification, identification_poses, identify_tool
-from pliant.experiments.config import Config
 from pliant.interfaces import Controller, Estimator, Plant
+from pliant.quantity import quantity
 from pliant.references.postures.posture_tour import PostureTour
 from pliant.robot import Robot
 from pliant.signals import Tick
@@ -25,24 +26,12 @@ class IdentifyToolConfig(Config):
     task_frame: str | None = Field(default=None, description="frame of the reference's task; None: the sensor's")
     poses: int = Field(default=8, ge=4, le=1000, description="number of poses; more make the uncertainty smaller")
     joints: int = Field(default=3, ge=1, le=100, description="how many of the last joints move")
-    share: float = Field(
-        default=0.8, gt=0.0, le=1.0, description="of each joint's range that is used", json_schema_extra={"unit": "1"}
-    )
-    lowest: float | None = Field(
-        default=None,
-        ge=-10.0,
-        le=10.0,
-        description="least height of the sensor; None: 0.1 m below home",
-        json_schema_extra={"unit": "m"},
-    )
-    move: float = Field(default=2.0, ge=0.01, le=1e3, description="from pose to pose", json_schema_extra={"unit": "s"})
-    settle: float = Field(
-        default=0.6, ge=0.01, le=1e3, description="rest before reading", json_schema_extra={"unit": "s"}
-    )
-    average: float = Field(default=0.4, ge=0.01, le=1e3, description="reading", json_schema_extra={"unit": "s"})
-    still: float = Field(
-        default=0.02, gt=0.0, description="largest mean joint speed while reading", json_schema_extra={"unit": "rad/s"}
-    )
+    share: float = quantity(0.8, "1", "of each joint's range that is used", gt=0.0, le=1.0)
+    lowest: float | None = quantity(None, "m", "least height of the sensor; None: 0.1 m below home", ge=-10.0, le=10.0)
+    move: float = quantity(2.0, "s", "from pose to pose", ge=0.01, le=1e3)
+    settle: float = quantity(0.6, "s", "rest before reading", ge=0.01, le=1e3)
+    average: float = quantity(0.4, "s", "reading", ge=0.01, le=1e3)
+    still: float = quantity(0.02, "rad/s", "largest mean joint speed while reading", gt=0.0)
     seed: int = Field(default=0, ge=0, description="of the choice of poses")
 
 

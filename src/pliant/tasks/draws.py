@@ -7,7 +7,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from pliant.configuration import Config, Range
+from pliant.configuration import Config
+from pliant.quantity import Range
 
 
 class Uniform(Config):

@@ -7,40 +7,37 @@ from typing import Literal
 from pydantic import Field
 
 from pliant.configuration import Config
+from pliant.quantity import quantity
 
 
 class Estimation(Config):
     """What stands between the sensors and the controller."""
 
-    joint_memory: float | None = Field(
-        default=None,
+    joint_memory: float | None = quantity(
+        None,
+        "s",
+        "of the joint state filter; 0: no filter; none: where a path is polished or wiped 0.3 s for"
+        " controllers that compensate, else 0",
         ge=0.0,
         le=100.0,
-        description="of the joint state filter; 0: no filter; none: where a path is polished or wiped 0.3 s for"
-        " controllers that compensate, else 0",
-        json_schema_extra={"unit": "s"},
     )
-    observer_gain: float = Field(
-        default=30.0,
+    observer_gain: float = quantity(
+        30.0,
+        "rad/s",
+        "of the momentum observer, which runs where the controller asks for a disturbance",
         gt=0.0,
         le=1e4,
-        description="of the momentum observer, which runs where the controller asks for a disturbance",
-        json_schema_extra={"unit": "rad/s"},
     )
-    wrench_cutoff: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e5,
-        description="of a Butterworth filter of the contact wrench; none: unfiltered",
-        json_schema_extra={"unit": "Hz"},
+    wrench_cutoff: float | None = quantity(
+        None, "Hz", "of a Butterworth filter of the contact wrench; none: unfiltered", gt=0.0, le=1e5
     )
-    acceleration_cutoff: float = Field(
-        default=200.0,
-        gt=0.0,
-        le=1e4,
-        description="of the joint accelerations with which the inertia of what the force sensor carries is taken off;"
+    acceleration_cutoff: float = quantity(
+        200.0,
+        "Hz",
+        "of the joint accelerations with which the inertia of what the force sensor carries is taken off;"
         " higher is less late and lets more of the velocities' noise through",
-        json_schema_extra={"unit": "Hz"},
+        gt=0.0,
+        le=1e4,
     )
     tare: Literal["weight", "bias"] | None = Field(
         default=None,

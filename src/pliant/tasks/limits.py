@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field, model_validator
 
-from pliant.configuration import Config, quantity
+from pliant.configuration import Config
+from pliant.quantity import quantity
 from pliant.tasks.parts import Vector
 
 

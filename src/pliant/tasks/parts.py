@@ -9,7 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from pliant.configuration import Config, quantity
+from pliant.configuration import Config
+from pliant.quantity import quantity
 from pliant.spatial import Array, rpy
 from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 from pliant.tasks.draws import Drawn, bounds

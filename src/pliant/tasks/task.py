@@ -6,7 +6,8 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from pliant.configuration import Config, Range, quantity
+from pliant.configuration import Config
+from pliant.quantity import Range, quantity
 from pliant.robots.rotors import RotorInertia
 from pliant.tasks.estimation import Estimation
 from pliant.tasks.limits import Limits
@@ -35,10 +36,8 @@ class TaskParts(Config):
 
     format: int = Field(default=FORMAT, ge=FORMAT, le=FORMAT, description="version of this form")
     description: str = Field(default="", description="one line, for people")
-    locked: dict[str, float] | None = Field(
-        default=None,
-        description="joint → angle at which it is fixed; none: those that the catalogue locks",
-        json_schema_extra={"unit": "deg"},
+    locked: dict[str, float] | None = quantity(
+        None, "deg", "joint → angle at which it is fixed; none: those that the catalogue locks"
     )
     rotor_inertia: RotorInertia = None
     tool: ToolConfig = ToolConfig()

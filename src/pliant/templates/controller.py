@@ -10,6 +10,7 @@ from pydantic import Field
 
 from pliant.entries import ControllerConfig
 from pliant.interfaces import ChannelUnit, Controller, Needs
+from pliant.quantity import quantity
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 
@@ -21,8 +22,8 @@ class MyController(Controller[pin.Data]):
         """Parameters; each is a `--set control.NAME=VALUE`. `frame` becomes the task's first frame by itself."""
 
         frame: str = Field(default="flange", description="frame that is pulled")
-        stiffness: float = Field(default=500.0, gt=0.0, description="K", json_schema_extra={"unit": "N/m"})
-        damping: float = Field(default=20.0, ge=0.0, description="of joints", json_schema_extra={"unit": "1/s"})
+        stiffness: float = quantity(500.0, "N/m", "K", gt=0.0)
+        damping: float = quantity(20.0, "1/s", "of joints", ge=0.0)
 
     def __init__(self, robot: Robot, config: Config, period: float) -> None:
         self.robot, self.config, self.period = robot, config, period  # period of control, s

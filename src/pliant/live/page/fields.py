@@ -13,6 +13,8 @@ from annotated_types import Ge, Gt, Le, Lt
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from pliant.quantity import unit_of
+
 _SLASH, _SPACE = "\u2215", "\u00a0"  # browsers break lines at the plain ones
 _TINY = 1e-4  # numbers below it are shown in full, as text
 Path = tuple[str, ...]
@@ -119,13 +121,12 @@ def _leaf(value: Any, about: FieldInfo, path: Path) -> Leaf | None:
     kind = _kind(value, kinds, choices)
     if kind is None:
         return None
-    unit = str(extra.get("unit", ""))
     return Leaf(
         path=path,
         value=value,
         kind=kind,
-        unit=unit,
-        description=(about.description or "").removesuffix(f" [{unit}]"),
+        unit=unit_of(about),
+        description=about.description or "",
         minimum=_number(extra.get("minimum"), low),
         maximum=_number(extra.get("maximum"), high),
         choices=choices,

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from pliant.configuration import validated
 from pliant.errors import OutputError, PliantError, RobotError
-from pliant.experiments.config import validated
 from pliant.experiments.registry import get_study, study_names
 from pliant.live.link.messages import Picture
 from pliant.live.loop.steered_plant import physics_of

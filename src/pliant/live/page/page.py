@@ -9,8 +9,8 @@ from typing import Any
 
 import viser
 
+from pliant.configuration import merged
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import merged
 from pliant.live.link.messages import (
     Flaws,
     Looks,

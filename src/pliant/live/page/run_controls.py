@@ -11,9 +11,9 @@ from typing import Any
 
 import viser
 
+from pliant.configuration import merged
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import merged
 from pliant.experiments.registry import get_study, study_names
 from pliant.live.link.messages import Begin, Flow, Message, Pulse, Ready, Record, StepOnce
 from pliant.live.link.steering_lock import Seat

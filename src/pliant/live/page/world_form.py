@@ -6,16 +6,13 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 
 from pliant.live.page.fields import FieldGroup, Path, group_of
+from pliant.quantity import quantity
 from pliant.simulation import Plane, Scene
 from pliant.simulation.scene import Thing
 from pliant.spatial import frame_with_z_along, rpy
-
-
-def _quantity(default: float, unit: str, text: str, low: float, high: float, **rules: Any) -> Any:
-    return Field(default, description=text, json_schema_extra={"unit": unit, "minimum": low, "maximum": high}, **rules)
 
 
 class SurfaceForm(BaseModel):
@@ -23,18 +20,18 @@ class SurfaceForm(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    stiffness: float = _quantity(1e4, "N/m", "force per penetration", 500.0, 5e4, gt=0.0)
-    damping: float = _quantity(1e2, "N s/m", "force per speed of penetration", 0.0, 500.0, ge=0.0)
-    friction: float = _quantity(0.5, "1", "Coulomb coefficient", 0.0, 1.5, ge=0.0)
+    stiffness: float = quantity(1e4, "N/m", "force per penetration", shown=(500.0, 5e4), gt=0.0)
+    damping: float = quantity(1e2, "N s/m", "force per speed of penetration", shown=(0.0, 500.0), ge=0.0)
+    friction: float = quantity(0.5, "1", "Coulomb coefficient", shown=(0.0, 1.5), ge=0.0)
 
 
 class PlaneForm(SurfaceForm):
     """The same, and how it leans against how the study put it up."""
 
-    tilt: float = _quantity(
-        0.0, "rad", "turned about the first horizontal axis of the surface", -0.5, 0.5, ge=-1.5, le=1.5
+    tilt: float = quantity(
+        0.0, "rad", "turned about the first horizontal axis of the surface", shown=(-0.5, 0.5), ge=-1.5, le=1.5
     )
-    turn: float = _quantity(0.0, "rad", "turned about the second one", -0.5, 0.5, ge=-1.5, le=1.5)
+    turn: float = quantity(0.0, "rad", "turned about the second one", shown=(-0.5, 0.5), ge=-1.5, le=1.5)
 
 
 class SceneForm:
@@ -56,7 +53,7 @@ class SceneForm:
 
     def changed(self, path: Path, value: Any) -> Scene:
         """The scene with one value changed. Raises ConfigError if the value breaks a rule."""
-        from pliant.experiments.config import merged
+        from pliant.configuration import merged
 
         name, key = path
         values = self._values | {name: merged(self._values[name], {key: value})}

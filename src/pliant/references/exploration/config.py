@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from pliant.configuration import Config
-
-
-def _in(unit: str) -> dict[str, Any]:
-    return {"unit": unit}
+from pliant.quantity import quantity
 
 
 class ExplorationConfig(Config):
@@ -24,132 +21,65 @@ class ExplorationConfig(Config):
         default="axes",
         description="axes: each axis on its own; normal: the target moves along the estimated contact normal only",
     )
-    gain: float = Field(
-        default=45.0,
+    gain: float = quantity(
+        45.0,
+        "1/s",
+        "k_I: how fast the force error decays; keep it below a tenth of the actuator's bandwidth in rad/s",
         gt=0.0,
         le=300.0,
-        description="k_I: how fast the force error decays; keep it below a tenth of the actuator's bandwidth in rad/s",
-        json_schema_extra=_in("1/s"),
     )
-    speed: float = Field(
-        default=0.15, gt=0.0, le=2.0, description="v_max: fastest motion of the offset", json_schema_extra=_in("m/s")
-    )
-    speed_rotation: float = Field(
-        default=0.5, gt=0.0, le=10.0, description="v_max of rotation axes", json_schema_extra=_in("rad/s")
-    )
+    speed: float = quantity(0.15, "m/s", "v_max: fastest motion of the offset", gt=0.0, le=2.0)
+    speed_rotation: float = quantity(0.5, "rad/s", "v_max of rotation axes", gt=0.0, le=10.0)
     reset: bool = Field(default=True, description="let the offset return to zero when contact is lost; off: hold it")
-    reset_speed: float = Field(
-        default=0.1, gt=0.0, le=2.0, description="speed at which the offset returns", json_schema_extra=_in("m/s")
-    )
-    reset_speed_rotation: float = Field(
-        default=0.5, gt=0.0, le=10.0, description="the same for rotation axes", json_schema_extra=_in("rad/s")
-    )
+    reset_speed: float = quantity(0.1, "m/s", "speed at which the offset returns", gt=0.0, le=2.0)
+    reset_speed_rotation: float = quantity(0.5, "rad/s", "the same for rotation axes", gt=0.0, le=10.0)
     seek: bool = Field(default=False, description="without contact, move against the desired force until it is made")
-    seek_speed: float = Field(
-        default=0.02, gt=0.0, le=0.5, description="speed of that search", json_schema_extra=_in("m/s")
-    )
-    seek_speed_rotation: float = Field(
-        default=0.1, gt=0.0, le=2.0, description="the same for rotation axes", json_schema_extra=_in("rad/s")
-    )
-    stiffness_floor: float = Field(
-        default=300.0,
+    seek_speed: float = quantity(0.02, "m/s", "speed of that search", gt=0.0, le=0.5)
+    seek_speed_rotation: float = quantity(0.1, "rad/s", "the same for rotation axes", gt=0.0, le=2.0)
+    stiffness_floor: float = quantity(
+        300.0,
+        "N/m",
+        "least stiffness the estimate may take; lower is faster on soft objects and trusts noise more",
         gt=0.0,
-        description="least stiffness the estimate may take; lower is faster on soft objects and trusts noise more",
-        json_schema_extra=_in("N/m"),
     )
-    stiffness_floor_rotation: float = Field(
-        default=3.0, gt=0.0, description="the same for rotation axes", json_schema_extra=_in("N·m/rad")
+    stiffness_floor_rotation: float = quantity(3.0, "N·m/rad", "the same for rotation axes", gt=0.0)
+    window: float = quantity(
+        0.020, "s", "time over which the stiffness is taken, and time constant of its filter", gt=0.0, le=0.5
     )
-    window: float = Field(
-        default=0.020,
-        gt=0.0,
-        le=0.5,
-        description="time over which the stiffness is taken, and time constant of its filter",
-        json_schema_extra=_in("s"),
+    least_motion: float = quantity(
+        2e-4, "m", "motion of the target within the window below which the estimate is left alone", gt=0.0
     )
-    least_motion: float = Field(
-        default=2e-4,
-        gt=0.0,
-        description="motion of the target within the window below which the estimate is left alone",
-        json_schema_extra=_in("m"),
+    least_motion_rotation: float = quantity(2e-3, "rad", "the same for rotation axes", gt=0.0)
+    contact_on: float = quantity(1.0, "N", "force above which contact begins", gt=0.0)
+    contact_off: float = quantity(0.5, "N", "force below which contact ends", gt=0.0)
+    contact_on_rotation: float = quantity(0.1, "N·m", "moment above which contact begins", gt=0.0)
+    contact_off_rotation: float = quantity(0.05, "N·m", "moment below which contact ends", gt=0.0)
+    contact_filter: float = quantity(
+        0.005, "s", "low-pass on the force that begins a contact, so that noise does not; 0 for none", ge=0.0, le=0.1
     )
-    least_motion_rotation: float = Field(
-        default=2e-3, gt=0.0, description="the same for rotation axes", json_schema_extra=_in("rad")
+    release_time: float = quantity(0.005, "s", "how long the force stays low before contact ends", ge=0.0, le=0.5)
+    lost_time: float = quantity(0.020, "s", "how long the offset waits for a lost contact to come back", ge=0.0, le=1.0)
+    unreachable_time: float = quantity(
+        0.05, "s", "how long the offset rests at its bound before the force is called unreachable", ge=0.0, le=5.0
     )
-    contact_on: float = Field(
-        default=1.0, gt=0.0, description="force above which contact begins", json_schema_extra=_in("N")
-    )
-    contact_off: float = Field(
-        default=0.5, gt=0.0, description="force below which contact ends", json_schema_extra=_in("N")
-    )
-    contact_on_rotation: float = Field(
-        default=0.1, gt=0.0, description="moment above which contact begins", json_schema_extra=_in("N·m")
-    )
-    contact_off_rotation: float = Field(
-        default=0.05, gt=0.0, description="moment below which contact ends", json_schema_extra=_in("N·m")
-    )
-    contact_filter: float = Field(
-        default=0.005,
-        ge=0.0,
-        le=0.1,
-        description="low-pass on the force that begins a contact, so that noise does not; 0 for none",
-        json_schema_extra=_in("s"),
-    )
-    release_time: float = Field(
-        default=0.005,
-        ge=0.0,
-        le=0.5,
-        description="how long the force stays low before contact ends",
-        json_schema_extra=_in("s"),
-    )
-    lost_time: float = Field(
-        default=0.020,
-        ge=0.0,
-        le=1.0,
-        description="how long the offset waits for a lost contact to come back",
-        json_schema_extra=_in("s"),
-    )
-    unreachable_time: float = Field(
-        default=0.05,
-        ge=0.0,
-        le=5.0,
-        description="how long the offset rests at its bound before the force is called unreachable",
-        json_schema_extra=_in("s"),
-    )
-    turn_speed: float = Field(
-        default=4e-3,
+    turn_speed: float = quantity(
+        4e-3,
+        "m/s",
+        "a retreat slower than this ends with a step back at this speed, which the impedance notices",
         gt=0.0,
         le=0.1,
-        description="a retreat slower than this ends with a step back at this speed, which the impedance notices",
-        json_schema_extra=_in("m/s"),
     )
-    turn_speed_rotation: float = Field(
-        default=4e-3, gt=0.0, le=0.2, description="the same for rotation axes", json_schema_extra=_in("rad/s")
+    turn_speed_rotation: float = quantity(4e-3, "rad/s", "the same for rotation axes", gt=0.0, le=0.2)
+    turn_time: float = quantity(0.015, "s", "how long that step back may last; 0 for none", ge=0.0, le=0.1)
+    normal_time: float = quantity(0.05, "s", "time constant of the estimated normal", gt=0.0, le=5.0)
+    normal_rate: float = quantity(2.0, "rad/s", "fastest turn of the estimated normal", gt=0.0, le=50.0)
+    normal_cone: float = quantity(
+        0.8, "rad", "largest angle between the estimated normal and the desired force", gt=0.0, le=1.5
     )
-    turn_time: float = Field(
-        default=0.015,
-        ge=0.0,
-        le=0.1,
-        description="how long that step back may last; 0 for none",
-        json_schema_extra=_in("s"),
-    )
-    normal_time: float = Field(
-        default=0.05, gt=0.0, le=5.0, description="time constant of the estimated normal", json_schema_extra=_in("s")
-    )
-    normal_rate: float = Field(
-        default=2.0, gt=0.0, le=50.0, description="fastest turn of the estimated normal", json_schema_extra=_in("rad/s")
-    )
-    normal_cone: float = Field(
-        default=0.8,
-        gt=0.0,
-        le=1.5,
-        description="largest angle between the estimated normal and the desired force",
-        json_schema_extra=_in("rad"),
-    )
-    resolution: float = Field(
-        default=0.01,
+    resolution: float = quantity(
+        0.01,
+        "-",
+        "mode paper only: sigma, the step as a share of F_d/K_0 and, as printed, a threshold in newtons",
         gt=0.0,
         le=1.0,
-        description="mode paper only: sigma, the step as a share of F_d/K_0 and, as printed, a threshold in newtons",
-        json_schema_extra=_in("-"),
     )

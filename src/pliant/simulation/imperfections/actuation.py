@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.configuration import Config, Range, quantity
+from pliant.configuration import Config
+from pliant.quantity import Range, quantity
 from pliant.sampling import kept_share
 from pliant.simulation.imperfections.link_config import PerJoint
 from pliant.simulation.seeding import generator

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pliant.configuration import Config, quantity
+from pliant.configuration import Config
+from pliant.quantity import quantity
 from pliant.simulation.imperfections.actuation import ActuationConfig
 from pliant.simulation.imperfections.ripple import RippleConfig
 from pliant.simulation.imperfections.sensing import SensingConfig

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pliant.configuration import Config, quantity
+from pliant.configuration import Config
+from pliant.quantity import quantity
 from pliant.spatial import Array
 
 _TURN = 2.0 * math.pi

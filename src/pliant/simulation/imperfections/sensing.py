@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.configuration import Config, quantity
+from pliant.configuration import Config
 from pliant.frozen import changed
+from pliant.quantity import quantity
 from pliant.sampling import whole_periods
 from pliant.signals import Measurement
 from pliant.simulation.imperfections.delay import Delay

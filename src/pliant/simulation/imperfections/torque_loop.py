@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.configuration import Config, quantity
+from pliant.configuration import Config
+from pliant.quantity import quantity
 from pliant.spatial import Array, clamp
 
 

@@ -14,15 +14,15 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from pliant.configuration import Config
 from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationConfig
 from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import Config
+from pliant.quantity import quantity
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.robot import Robot
-from pliant.studies.haptic.fields import quantity
 from pliant.studies.haptic.scene_config import HapticScene, Hardware
 from pliant.studies.haptic.steps_config import FootImpedance, HapticPlannerConfig, OnlineChanges, Step
 from pliant.wiring.recipes import HapticConfig as HapticRecipe
@@ -69,13 +69,7 @@ class Check(Config):
         None, "N", "force before a step; none: the true force at its command", ge=-1e6, le=1e6
     )
     relative: bool = Field(default=False, description="as a share of the force that was asked for")
-    target: float | None = Field(
-        default=None,
-        ge=-1e9,
-        le=1e9,
-        description="bound of the metric",
-        json_schema_extra={"unit": "that of the metric"},
-    )
+    target: float | None = quantity(None, "that of the metric", "bound of the metric", ge=-1e9, le=1e9)
 
 
 class HapticCaseConfig(CaseConfig):
@@ -89,7 +83,7 @@ class HapticCaseConfig(CaseConfig):
     robot: str = Field(default="leg3", description="catalogue name, or path of a URDF or MJCF file")
     frame: str = Field(default="foot", description="frame that presses; it carries the force sensor")
     sensor: bool = Field(default=True, description="whether there is a force sensor at the frame")
-    duration: float = Field(default=7.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
+    duration: float = quantity(7.0, "s", "length of the run", gt=0.0)
     period: float = quantity(1e-3, "s", "control period", gt=0.0)
     physics_step: float = quantity(2e-5, "s", "of the simulation", gt=0.0)
     environment: HapticScene = HapticScene()

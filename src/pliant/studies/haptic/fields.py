@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -10,8 +10,3 @@ _Number = Annotated[float, Field(ge=-1e6, le=1e6)]
 Vector = tuple[_Number, _Number, _Number]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e8)]
 Triple = tuple[NotNegative, NotNegative, NotNegative]
-
-
-def quantity(default: Any, unit: str, description: str, **limits: Any) -> Any:
-    """A field with a unit."""
-    return Field(default, description=description, json_schema_extra={"unit": unit}, **limits)

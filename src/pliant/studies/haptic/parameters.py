@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pliant.configuration import parse_assignments
 from pliant.experiments.case import Case, Row
-from pliant.experiments.config import parse_assignments
 from pliant.experiments.result import Result
 from pliant.studies.haptic.scene_config import Material
 from pliant.telemetry.plots import style

@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pliant.experiments.config import Config
-from pliant.studies.haptic.fields import Vector, quantity
+from pliant.configuration import Config
+from pliant.quantity import quantity
+from pliant.studies.haptic.fields import Vector
 
 _Edge = Annotated[float, Field(ge=1e-4, le=100.0)]  # m
 _Scale = Annotated[float, Field(ge=1e-3, le=1e3)]

@@ -7,12 +7,13 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from pliant.configuration import Config
 from pliant.controllers.attractor import Law
 from pliant.controllers.profiles import Shape
 from pliant.errors import PliantError
-from pliant.experiments.config import Config
+from pliant.quantity import quantity
 from pliant.signals import ImpedanceTuning
-from pliant.studies.haptic.fields import Triple, Vector, quantity
+from pliant.studies.haptic.fields import Triple, Vector
 
 
 class FootImpedance(Config):

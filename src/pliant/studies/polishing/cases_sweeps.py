@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from pliant.configuration import merged
 from pliant.experiments.case import Case, Changes, Row
-from pliant.experiments.config import merged
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.rows import ALL, BEST, ROWS, SWEPT, against, case_config, imperfect, varied
 

@@ -11,11 +11,12 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from pliant.configuration import merged
 from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import merged
 from pliant.mpc.presets import PRESETS
+from pliant.quantity import quantity
 from pliant.robot import Robot, Tool
 from pliant.robots.rotors import RotorInertia
 from pliant.simulation import Imperfections
@@ -42,51 +43,39 @@ class PolishingConfig(CaseConfig):
     robot: str = Field(
         default="iiwa14", description="catalogue name, or path of a URDF or MJCF file with a frame 'flange'"
     )
-    locked: dict[str, float] | None = Field(
-        default=None,
-        description="joint → angle at which it is fixed, replaced as a whole; none: A7 of the iiwa14 as in the paper,"
+    locked: dict[str, float] | None = quantity(
+        None,
+        "rad",
+        "joint → angle at which it is fixed, replaced as a whole; none: A7 of the iiwa14 as in the paper,"
         " of another robot what the catalogue locks; {}: none",
-        json_schema_extra={"unit": "rad"},
     )
-    rotor_inertia: RotorInertia = Field(
-        default=None,
-        description="the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: 0 for"
+    rotor_inertia: RotorInertia = quantity(
+        None,
+        "kg m²",
+        "the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: 0 for"
         " the iiwa14, whose model in the paper has none, of another robot that of the catalogue or of the file",
-        json_schema_extra={"unit": "kg m²"},
     )
-    duration: float = Field(default=10.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
-    period: float = Field(default=1e-3, gt=0.0, description="control period", json_schema_extra={"unit": "s"})
-    physics_step: float = Field(default=5e-4, gt=0.0, description="of the simulation", json_schema_extra={"unit": "s"})
+    duration: float = quantity(10.0, "s", "length of the run", gt=0.0)
+    period: float = quantity(1e-3, "s", "control period", gt=0.0)
+    physics_step: float = quantity(5e-4, "s", "of the simulation", gt=0.0)
     table: Table = Table()
     task: Work = Work()
     imperfections: Imperfections = Field(default=Imperfections(), description="of sensors, drives and computation")
-    unknown_mass: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=1e3,
-        description="of the tool, beside its known 0.4 kg",
-        json_schema_extra={"unit": "kg"},
-    )
-    model_mass_error: float = Field(
-        default=0.0,
+    unknown_mass: float = quantity(0.0, "kg", "of the tool, beside its known 0.4 kg", ge=0.0, le=1e3)
+    model_mass_error: float = quantity(
+        0.0,
+        "1",
+        "share by which each link's mass is off in the controller's model, drawn uniformly within ±",
         ge=0.0,
         lt=1.0,
-        description="share by which each link's mass is off in the controller's model, drawn uniformly within ±",
-        json_schema_extra={"unit": "1"},
     )
-    delay_error: float = Field(
-        default=0.0,
-        ge=-1.0,
-        le=1.0,
-        description="of δ_o in controllers that predict: believed minus true",
-        json_schema_extra={"unit": "s"},
-    )
-    torque_step: float | None = Field(
-        default=DEFAULT_SHARE,
+    delay_error: float = quantity(0.0, "s", "of δ_o in controllers that predict: believed minus true", ge=-1.0, le=1.0)
+    torque_step: float | None = quantity(
+        DEFAULT_SHARE,
+        "1",
+        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         gt=0.0,
         le=1e3,
-        description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
-        json_schema_extra={"unit": "1"},
     )
     pushes: RepeatedPushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
     preset: Literal["tuned", "perfect", "paper"] = Field(

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pliant.configuration import merged
 from pliant.experiments.case import Changes, Draws, Row
-from pliant.experiments.config import merged
 from pliant.simulation import Imperfections
 from pliant.studies.figures import Drawn, against_value, in_rows
 from pliant.studies.polishing.config import PolishingConfig

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from pliant.configuration import merged
 from pliant.errors import ConfigError
 from pliant.experiments.base import Result
-from pliant.experiments.config import merged
 from pliant.experiments.tuning import Range, Tuning
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.config import PolishingConfig

@@ -6,106 +6,41 @@ from typing import Literal
 
 from pydantic import Field
 
-from pliant.experiments.config import Config
+from pliant.configuration import Config
+from pliant.quantity import quantity
 
 
 class Table(Config):
     """The surface that is polished. The tool comes down at y = 0."""
 
-    height: float = Field(
-        default=0.01, ge=-10.0, le=10.0, description="z of its surface", json_schema_extra={"unit": "m"}
-    )
-    height_error: float = Field(
-        default=0.0,
-        ge=-1.0,
-        le=1.0,
-        description="by how much the controller believes it higher",
-        json_schema_extra={"unit": "m"},
-    )
-    x: float = Field(
-        default=0.65, ge=-10.0, le=10.0, description="x at which the tool comes down", json_schema_extra={"unit": "m"}
-    )
-    stiffness: float = Field(
-        default=1e4, gt=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N/m"}
-    )
-    damping: float = Field(
-        default=1e2, ge=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N·s/m"}
-    )
-    friction: float = Field(
-        default=0.25, ge=0.0, le=10.0, description="Coulomb coefficient", json_schema_extra={"unit": "1"}
-    )
-    tilt: float = Field(
-        default=0.0,
-        ge=-1.5,
-        le=1.5,
-        description="about the world's x axis, unknown to the controller",
-        json_schema_extra={"unit": "rad"},
-    )
+    height: float = quantity(0.01, "m", "z of its surface", ge=-10.0, le=10.0)
+    height_error: float = quantity(0.0, "m", "by how much the controller believes it higher", ge=-1.0, le=1.0)
+    x: float = quantity(0.65, "m", "x at which the tool comes down", ge=-10.0, le=10.0)
+    stiffness: float = quantity(1e4, "N/m", "of the contact", gt=0.0, le=1e8)
+    damping: float = quantity(1e2, "N·s/m", "of the contact", ge=0.0, le=1e8)
+    friction: float = quantity(0.25, "1", "Coulomb coefficient", ge=0.0, le=10.0)
+    tilt: float = quantity(0.0, "rad", "about the world's x axis, unknown to the controller", ge=-1.5, le=1.5)
 
 
 class Work(Config):
     """What the tool does. Times count from the start of the run."""
 
-    start: float = Field(
-        default=0.10,
-        gt=0.0,
-        le=10.0,
-        description="height over the table where the run starts",
-        json_schema_extra={"unit": "m"},
-    )
-    above: float = Field(
-        default=0.02,
-        gt=0.0,
-        le=10.0,
-        description="height over the table where reach ends",
-        json_schema_extra={"unit": "m"},
-    )
-    reach: float = Field(
-        default=0.5, gt=0.0, le=1e4, description="end of the motion above the table", json_schema_extra={"unit": "s"}
-    )
-    touch: float = Field(
-        default=1.0, gt=0.0, le=1e4, description="end of the descent; contact begins", json_schema_extra={"unit": "s"}
-    )
-    pressed: float = Field(
-        default=2.0, gt=0.0, le=1e4, description="end of the ramp of the force", json_schema_extra={"unit": "s"}
-    )
-    circle: float = Field(
-        default=3.0,
-        gt=0.0,
-        le=1e4,
-        description="start of the circle or of the force steps",
-        json_schema_extra={"unit": "s"},
-    )
-    light: float = Field(
-        default=5.0, gt=0.0, le=1e4, description="force at first contact", json_schema_extra={"unit": "N"}
-    )
-    force: float = Field(
-        default=50.0, gt=0.0, le=1e4, description="force of the circle", json_schema_extra={"unit": "N"}
-    )
+    start: float = quantity(0.10, "m", "height over the table where the run starts", gt=0.0, le=10.0)
+    above: float = quantity(0.02, "m", "height over the table where reach ends", gt=0.0, le=10.0)
+    reach: float = quantity(0.5, "s", "end of the motion above the table", gt=0.0, le=1e4)
+    touch: float = quantity(1.0, "s", "end of the descent; contact begins", gt=0.0, le=1e4)
+    pressed: float = quantity(2.0, "s", "end of the ramp of the force", gt=0.0, le=1e4)
+    circle: float = quantity(3.0, "s", "start of the circle or of the force steps", gt=0.0, le=1e4)
+    light: float = quantity(5.0, "N", "force at first contact", gt=0.0, le=1e4)
+    force: float = quantity(50.0, "N", "force of the circle", gt=0.0, le=1e4)
     pattern: Literal["circle", "square"] = Field(
         default="circle", description="a circle under constant force, or force steps on one spot ([FFMPC] VII-B)"
     )
-    low: float = Field(
-        default=20.0, gt=0.0, le=1e4, description="lower level of the force steps", json_schema_extra={"unit": "N"}
-    )
-    half_period: float = Field(
-        default=1.0,
-        ge=1e-3,
-        le=1e4,
-        description="time on each level of the force steps",
-        json_schema_extra={"unit": "s"},
-    )
-    radius: float = Field(default=0.07, gt=0.0, le=10.0, description="of the circle", json_schema_extra={"unit": "m"})
-    speed: float = Field(
-        default=3.0, gt=0.0, le=100.0, description="of the circle", json_schema_extra={"unit": "rad/s"}
-    )
-    ease: float = Field(
-        default=0.5,
-        ge=1e-3,
-        le=1e4,
-        description="time in which the circle starts from rest",
-        json_schema_extra={"unit": "s"},
-    )
+    low: float = quantity(20.0, "N", "lower level of the force steps", gt=0.0, le=1e4)
+    half_period: float = quantity(1.0, "s", "time on each level of the force steps", ge=1e-3, le=1e4)
+    radius: float = quantity(0.07, "m", "of the circle", gt=0.0, le=10.0)
+    speed: float = quantity(3.0, "rad/s", "of the circle", gt=0.0, le=100.0)
+    ease: float = quantity(0.5, "s", "time in which the circle starts from rest", ge=1e-3, le=1e4)
     found: bool = Field(default=False, description="contact begins when it is felt, not by the timetable")
 
 
@@ -113,7 +48,7 @@ class RepeatedPushes(Config):
     """Pushes by a person: a constant force in a random horizontal direction on another frame, again and again."""
 
     frame: str = Field(default="flange", description="that is pushed")
-    force: float = Field(default=20.0, ge=0.0, le=1e4, description="of one push", json_schema_extra={"unit": "N"})
-    duration: float = Field(default=0.5, ge=1e-3, le=1e4, description="of one push", json_schema_extra={"unit": "s"})
-    gap: float = Field(default=0.8, ge=1e-3, le=1e4, description="between two pushes", json_schema_extra={"unit": "s"})
-    start: float = Field(default=4.0, ge=0.0, le=1e4, description="of the first push", json_schema_extra={"unit": "s"})
+    force: float = quantity(20.0, "N", "of one push", ge=0.0, le=1e4)
+    duration: float = quantity(0.5, "s", "of one push", ge=1e-3, le=1e4)
+    gap: float = quantity(0.8, "s", "between two pushes", ge=1e-3, le=1e4)
+    start: float = quantity(4.0, "s", "of the first push", ge=0.0, le=1e4)

@@ -11,13 +11,13 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from pliant.configuration import in_order
+from pliant.configuration import Config
 from pliant.controllers.presets import SOFT_STACK, STIFF_STACK, TABLE_I_ROBOT, TABLE_I_SIMULATION
 from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
-from pliant.experiments.config import Config
+from pliant.quantity import in_order, quantity
 from pliant.robot import Robot
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
@@ -39,18 +39,10 @@ class StackPath(Config):
         default="figure8",
         description="figure8: x 0.1 m, z 0.2 m; line: along x; stretch: along −y until the elbow is straight; hold",
     )
-    period: float = Field(default=4.0, ge=0.01, le=1e4, description="of the figure-8", json_schema_extra={"unit": "s"})
-    amplitude: float = Field(default=0.5, gt=0.0, le=10.0, description="of the line", json_schema_extra={"unit": "m"})
-    peak_speed: float = Field(
-        default=0.7, gt=0.0, le=100.0, description="of the line", json_schema_extra={"unit": "m/s"}
-    )
-    ramp: float = Field(
-        default=2.0,
-        ge=0.0,
-        le=1e4,
-        description="time in which the motion starts from rest",
-        json_schema_extra={"unit": "s"},
-    )
+    period: float = quantity(4.0, "s", "of the figure-8", ge=0.01, le=1e4)
+    amplitude: float = quantity(0.5, "m", "of the line", gt=0.0, le=10.0)
+    peak_speed: float = quantity(0.7, "m/s", "of the line", gt=0.0, le=100.0)
+    ramp: float = quantity(2.0, "s", "time in which the motion starts from rest", ge=0.0, le=1e4)
     method: Literal["mink", "aico"] = Field(
         default="mink",
         description="inverse kinematics for the posture: quadratic programs, or one-step approximate inference",
@@ -60,60 +52,40 @@ class StackPath(Config):
 class Joints(Config):
     """How the simulated joints behave."""
 
-    friction: float = Field(
-        default=0.0, ge=0.0, le=1e4, description="dry friction of each joint", json_schema_extra={"unit": "N·m"}
-    )
-    damping: float = Field(
-        default=0.0, ge=0.0, le=1e4, description="of each joint", json_schema_extra={"unit": "N·m s/rad"}
-    )
+    friction: float = quantity(0.0, "N·m", "dry friction of each joint", ge=0.0, le=1e4)
+    damping: float = quantity(0.0, "N·m s/rad", "of each joint", ge=0.0, le=1e4)
     compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(
         default="none", description="what the robot compensates by itself"
     )
-    velocity_filter: float = Field(
-        default=1.0,
-        gt=0.0,
-        le=1.0,
-        description="share of a new sample in the low-passed joint velocity; 1: no filter",
-        json_schema_extra={"unit": "1"},
+    velocity_filter: float = quantity(
+        1.0, "1", "share of a new sample in the low-passed joint velocity; 1: no filter", gt=0.0, le=1.0
     )
 
 
 class Wall(Config):
     """A wall in the tool's way that nobody knows of."""
 
-    x: float = Field(
-        default=0.07, ge=-10.0, le=10.0, description="where it stops the tool", json_schema_extra={"unit": "m"}
-    )
-    stiffness: float = Field(
-        default=1e4, gt=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N/m"}
-    )
-    damping: float = Field(
-        default=1e2, ge=0.0, le=1e8, description="of the contact", json_schema_extra={"unit": "N s/m"}
-    )
-    friction: float = Field(
-        default=0.1, ge=0.0, le=10.0, description="Coulomb coefficient", json_schema_extra={"unit": "1"}
-    )
+    x: float = quantity(0.07, "m", "where it stops the tool", ge=-10.0, le=10.0)
+    stiffness: float = quantity(1e4, "N/m", "of the contact", gt=0.0, le=1e8)
+    damping: float = quantity(1e2, "N s/m", "of the contact", ge=0.0, le=1e8)
+    friction: float = quantity(0.1, "1", "Coulomb coefficient", ge=0.0, le=10.0)
 
 
 class RandomPushes(Config):
     """Random pushes on a frame, one after the other."""
 
     frame: str = Field(default="elbow", description="that is pushed")
-    force: Annotated[tuple[_Force, _Force], AfterValidator(in_order)] = Field(
-        default=(10.0, 30.0), description="least and most", json_schema_extra={"unit": "N"}
-    )
-    duration: Span = Field(default=(0.2, 0.6), description="of a push, least and most", json_schema_extra={"unit": "s"})
-    gap: Span = Field(
-        default=(0.1, 0.4), description="between two pushes, least and most", json_schema_extra={"unit": "s"}
-    )
+    force: Annotated[tuple[_Force, _Force], AfterValidator(in_order)] = quantity((10.0, 30.0), "N", "least and most")
+    duration: Span = quantity((0.2, 0.6), "s", "of a push, least and most")
+    gap: Span = quantity((0.1, 0.4), "s", "between two pushes, least and most")
 
 
 class GainChanges(Config):
     """Random changes of every gain and force bound while the robot moves."""
 
-    rate: float = Field(default=4.0, gt=0.0, le=1e3, description="changes per second", json_schema_extra={"unit": "Hz"})
-    factor: Annotated[tuple[_Factor, _Factor], AfterValidator(in_order)] = Field(
-        default=(0.1, 2.0), description="range of the factor on K_0 and F_max", json_schema_extra={"unit": "1"}
+    rate: float = quantity(4.0, "Hz", "changes per second", gt=0.0, le=1e3)
+    factor: Annotated[tuple[_Factor, _Factor], AfterValidator(in_order)] = quantity(
+        (0.1, 2.0), "1", "range of the factor on K_0 and F_max"
     )
 
 
@@ -137,14 +109,9 @@ class StackCaseConfig(CaseConfig):
 
     controller: str = Field(default="stack", description="name of the controller; see `pliant list controllers`")
     robot: str = Field(default="lwr4", description="catalogue name, or path of a URDF or MJCF file")
-    duration: float = Field(default=12.0, gt=0.0, description="length of the run", json_schema_extra={"unit": "s"})
-    period: float = Field(
-        default=1e-3,
-        gt=0.0,
-        description="control period, a whole multiple of the physics step",
-        json_schema_extra={"unit": "s"},
-    )
-    physics_step: float = Field(default=5e-4, gt=0.0, description="of the simulation", json_schema_extra={"unit": "s"})
+    duration: float = quantity(12.0, "s", "length of the run", gt=0.0)
+    period: float = quantity(1e-3, "s", "control period, a whole multiple of the physics step", gt=0.0)
+    physics_step: float = quantity(5e-4, "s", "of the simulation", gt=0.0)
     path: StackPath = StackPath()
     joints: Joints = Joints()
     preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(
@@ -154,20 +121,19 @@ class StackCaseConfig(CaseConfig):
         default={},
         description="changes to the controller's parameters, e.g. control.tasks.ee.translation.stiffness=8000",
     )
-    torque_step: float | None = Field(
-        default=DEFAULT_SHARE,
+    torque_step: float | None = quantity(
+        DEFAULT_SHARE,
+        "1",
+        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         gt=0.0,
         le=1e3,
-        description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
-        json_schema_extra={"unit": "1"},
     )
-    model_mass_error: float = Field(
-        default=0.0,
+    model_mass_error: float = quantity(
+        0.0,
+        "1",
+        "share by which each link's mass is off in the model of a controller that has one, drawn uniformly within ±",
         ge=0.0,
         lt=1.0,
-        description="share by which each link's mass is off in the model of a controller that has one, drawn uniformly"
-        " within ±",
-        json_schema_extra={"unit": "1"},
     )
     wall: Wall | None = Field(default=None, description="in the tool's way; none: without")
     pushes: RandomPushes | None = Field(default=None, description="on a frame; none: without")

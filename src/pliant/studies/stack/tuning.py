@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from pliant.configuration import merged
 from pliant.dotted import nested
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import Result
-from pliant.experiments.config import merged
 from pliant.experiments.tuning import Range, Tuning
 from pliant.studies.stack.config import PRESETS, StackCaseConfig
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from pydantic import Field
-
 from pliant.configuration import merged
 from pliant.controllers.step_limit import DEFAULT_SHARE
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.base_config import Dial
 from pliant.mpc.presets import PRESETS
+from pliant.quantity import quantity
 from pliant.references.surface_task import SurfaceTaskSettings
 from pliant.robot import Robot
 from pliant.surfaces import SurfaceGeometry
@@ -26,18 +25,14 @@ _WHOLE = 3600.0  # s
 class TaskCase(TaskParts, CaseConfig):
     """A task with the robot, the controller and the seed of one run."""
 
-    duration: float = Field(
-        default=_WHOLE,
-        gt=0.0,
-        le=_WHOLE,
-        description="after which the run ends in any case; by default the whole path is run",
-        json_schema_extra={"unit": "s"},
+    duration: float = quantity(
+        _WHOLE, "s", "after which the run ends in any case; by default the whole path is run", gt=0.0, le=_WHOLE
     )
-    torque_step: float | None = Field(
-        default=DEFAULT_SHARE,
+    torque_step: float | None = quantity(
+        DEFAULT_SHARE,
+        "1",
+        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
         gt=0.0,
-        description="largest change of a joint's torque per period, as a share of its limit; none: unbounded",
-        json_schema_extra={"unit": "1"},
     )
 
     @property

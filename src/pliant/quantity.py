@@ -1,0 +1,41 @@
+"""The fields of a configuration that hold a quantity: what it is, its unit, its bounds, and what is usual of it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
+from pydantic.fields import FieldInfo
+
+
+def quantity(default: Any, unit: str, text: str, *, shown: tuple[float, float] | None = None, **limits: Any) -> Any:
+    """A field with a unit. Help texts, tables of values and sliders are made from it.
+
+    Args:
+        default: its value where none is given; `...`: one must be given.
+        unit: such as "N/m"; "1" for a ratio.
+        text: what it is, without the unit.
+        shown: lowest and highest value of its slider on the live page; both may be passed elsewhere.
+        limits: what a value has to keep, pydantic's `ge`, `gt`, `le`, `lt`, `min_length`.
+    """
+    extra: dict[str, Any] = {"unit": unit}
+    if shown is not None:
+        extra["minimum"], extra["maximum"] = shown
+    return Field(default, description=text, json_schema_extra=extra, **limits)
+
+
+def unit_of(about: FieldInfo) -> str:
+    """Unit of a field, "" of one that holds no quantity."""
+    extra = about.json_schema_extra
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
+
+
+def in_order(value: tuple[float, float]) -> tuple[float, float]:
+    """Validator of a range (lowest, highest). Raises ValueError if it is the other way round."""
+    if value[0] > value[1]:
+        raise ValueError("a range goes from low to high, [lowest, highest]")
+    return value
+
+
+Range = Annotated[tuple[float, float], AfterValidator(in_order)]
+"""lowest and highest value"""
