@@ -236,17 +236,3 @@ def test_things_stand_where_the_scene_says() -> None:
     floor, box = scene_of(study_of("push-box").case("push-box")).things
     assert (floor.name, floor.surface.friction, floor.surface.friction_moving) == ("floor", 0.5, 0.3)
     assert (box.name, box.surface.stiffness) == ("box", 1e6)
-
-
-def test_who_presses_upright_only_says_so_of_a_push_to_the_side() -> None:
-    box = get_study("push-box").case("push-box")
-
-    def said(controller: str) -> list[str]:
-        made = get_study("push-box").build(merged(box, {"controller": controller}))
-        return [text for text in made.warnings if "world's z axis" in text]
-
-    assert len(said("offset-free-mpc")) == 1
-    assert said("haptic") == []
-    down = get_study("floor")
-    made = down.build(merged(down.case("floor"), {"controller": "offset-free-mpc"}))
-    assert not [text for text in made.warnings if "world's z axis" in text]

@@ -11,6 +11,7 @@ import numpy as np
 
 from pliant.errors import ConfigError, RunFailedError
 from pliant.interfaces import ReferenceSource
+from pliant.references.force_axes import task_axes
 from pliant.robot import Robot
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import Array
@@ -197,7 +198,9 @@ class Stages(ReferenceSource[StageState]):
             if change.target is not None:
                 task = replace(task, position=change.target)
             if change.wrench is not None:
-                task = replace(task, wrench=change.wrench)
+                axes = task_axes(np.eye(3) if task.task_rotation is None else task.task_rotation, change.wrench)
+                axes = task.task_rotation if axes is None else axes
+                task = replace(task, wrench=change.wrench, task_rotation=axes)
             if change.tuning and task.tuning is not None:
                 task = replace(task, tuning=replace(task.tuning, **change.tuning))
             whole = state.whole.model_copy(update=change.whole) if change.whole else state.whole

@@ -5,9 +5,18 @@ Plant, estimators, references and predictive controllers share these shapes; how
 """
 
 from pliant.surfaces.cylinder import CylinderSurface
+from pliant.surfaces.facets import FacetSurface
 from pliant.surfaces.geometry import Nearest, SurfaceGeometry
 from pliant.surfaces.mesh import MeshSurface
 from pliant.surfaces.plane import PlaneSurface
 from pliant.surfaces.sphere import SphereSurface
 
-__all__ = ["CylinderSurface", "MeshSurface", "Nearest", "PlaneSurface", "SphereSurface", "SurfaceGeometry"]
+__all__ = [
+    "CylinderSurface",
+    "FacetSurface",
+    "MeshSurface",
+    "Nearest",
+    "PlaneSurface",
+    "SphereSurface",
+    "SurfaceGeometry",
+]

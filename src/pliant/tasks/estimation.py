@@ -16,8 +16,8 @@ class Estimation(Config):
     joint_memory: float | None = quantity(
         None,
         "s",
-        "of the joint state filter; 0: no filter; none: where a path is polished or wiped 0.3 s for"
-        " controllers that compensate, else 0",
+        "of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, where a path is polished"
+        " or wiped and in lists of phases whose timing is late, else 0",
         ge=0.0,
         le=100.0,
     )

@@ -88,8 +88,10 @@ class Phase(Config):
         default={},
         description="frame → motion, the first one; 'posture' for frames that go where the posture puts them",
     )
-    frame: str | Pose = Field(
-        default="world", description="axes of target, wrench and modes: world, a thing, or a pose"
+    frame: str | Pose | None = Field(
+        default=None,
+        description="axes of target, wrench and modes: world, a thing, or a pose; none: those of the phase before, the"
+        " world's at first",
     )
     target: Vector | None = quantity(None, "m", "of the moved frame; none: that of the phase before")
     wrench: tuple[float, ...] | None = quantity(

@@ -37,9 +37,11 @@ from pliant.studies.task.listed import (
     stages_of,
     tracks_of,
 )
+from pliant.studies.task.pressed import pressed_planes
 from pliant.studies.task.sensor import known_load, sensor_of
 from pliant.studies.task.tracked import tracked_motion
 from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
+from pliant.surfaces import SurfaceGeometry
 from pliant.telemetry.schema import Channel
 from pliant.wiring.estimators import Load
 from pliant.wiring.experiment import Experiment
@@ -78,7 +80,8 @@ def listed(case: TaskCase) -> Listed:
     _refuse(case, stages)
     pressing = any(np.any(stage.task.wrench) for stage in stages)
     oriented = all(stage.task.rotation is not None for stage in stages)
-    believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None)
+    surface = pressed_planes(stages, changes_of(case))
+    believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None, surface)
     return Listed(robot, believed, case.controller_parameters(robot, believed), start, _whole(case), None)
 
 
@@ -100,6 +103,7 @@ def build_list(case: TaskCase) -> Experiment:
     made = listed(case)
     tracking = made.tracked is not None
     frames = made.believed.frames
+    late = case.timing.sensing_delay + case.timing.computation_delay > 0.0
     offer = Offer(
         robot=made.robot,
         model=with_mass_error(made.robot, case.truth.link_masses, generator(case.seed, "model.masses")),
@@ -110,7 +114,7 @@ def build_list(case: TaskCase) -> Experiment:
             case.estimation,
             felt=not tracking,
             velocity_gain=case.velocity_share,
-            joint_memory=0.0,
+            joint_memory=None if late else 0.0,
             load=_load(case, frames[0]),
         ),
         torque_step=case.torque_step,
@@ -118,28 +122,17 @@ def build_list(case: TaskCase) -> Experiment:
         duration=made.duration,
         limits=run_limits(case.limits, frames[0]),
         channels=() if tracking else (Channel(f"planner/{frames[0]}/clamped", "m"),),
-        warnings=_sideways(case, made),
     )
     return wired(case.entry, made.parameters, offer)
 
 
-def _sideways(case: TaskCase, made: Listed) -> tuple[str, ...]:
-    """What is not held: a controller that looks ahead regulates along the world's z axis where no surface is said."""
-    if made.tracked is not None or case.entry.needs(made.parameters).preview is None:
-        return ()
-    stages = stages_of(case, made.robot, made.robot.placement(made.start, made.believed.frames[0])[1])
-    across = [
-        one.name for one in stages if np.linalg.norm(one.task.wrench[:2]) > 0.02 * np.linalg.norm(one.task.wrench)
-    ]
-    if not across:
-        return ()
-    return (
-        f"controller {case.controller!r} presses along the world's z axis in a list of phases: the rest of the wrench"
-        f" of {', '.join(map(repr, across))} will not be held; haptic holds it",
-    )
-
-
-def _believed(case: TaskCase, frames: tuple[str, ...], oriented: bool, presses: str | None) -> Believed:
+def _believed(
+    case: TaskCase,
+    frames: tuple[str, ...],
+    oriented: bool,
+    presses: str | None,
+    surface: SurfaceGeometry | None = None,
+) -> Believed:
     sought = {name: one.touch is not None for name, one in zip(case.phase_names(), case.phase, strict=True)}
     own = case.impedance
     tuning = None if own is None else ImpedanceTuning(*map(per_axis, (own.stiffness, own.force_max, own.range)))
@@ -148,6 +141,7 @@ def _believed(case: TaskCase, frames: tuple[str, ...], oriented: bool, presses: 
         period=case.simulation.period,
         oriented=oriented,
         presses=presses,
+        surface=surface,
         compensation=case.compensates,
         sensing_delay=case.timing.sensing_delay,
         computation_delay=case.timing.computation_delay,

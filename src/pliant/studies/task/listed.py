@@ -17,6 +17,7 @@ from pliant.simulation.scene import Thing
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.pressed import with_axes
 from pliant.tasks.draws import drawn
 from pliant.tasks.parts import Pose
 from pliant.tasks.phase import Condition, Event, PerAxis, Phase
@@ -67,9 +68,11 @@ def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...
     """
     frame, target, wrench, held = frame_of(case), None, np.zeros(6), False
     robot.frame_id(frame)
+    axes, origin = np.eye(3), np.zeros(3)
     found: list[Stage] = []
+    frames: list[Array] = []
     for name, phase in zip(case.phase_names(), case.phase, strict=True):
-        axes, origin = _axes(case, name, phase)
+        axes, origin = (axes, origin) if phase.frame is None else _axes(case, name, phase.frame)
         _possible(case, name, phase)
         if phase.target is not None:
             target = origin + axes @ np.array(phase.target)
@@ -83,7 +86,8 @@ def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...
         task = TaskReference(frame, target, rotation if held else None, wrench=wrench)
         endings = tuple(_ending(one, phase.otherwise) for one in phase.conditions)
         found.append(Stage(name, task, endings))
-    return tuple(found)
+        frames.append(axes)
+    return with_axes(found, frames)
 
 
 def changes_of(case: TaskCase) -> tuple[StageChange, ...]:
@@ -129,18 +133,16 @@ def _possible(case: TaskCase, name: str, phase: Phase) -> None:
         raise ConfigError(f"phase {name!r}: wrench presses along axes whose mode is not force: {', '.join(both)}")
 
 
-def _axes(case: TaskCase, name: str, phase: Phase) -> tuple[Array, Array]:
+def _axes(case: TaskCase, name: str, frame: str | Pose) -> tuple[Array, Array]:
     """R_world_frame (3, 3) and origin (3,) m of what a phase's numbers are in."""
-    if isinstance(phase.frame, Pose):
-        return phase.frame.rotation, np.array(phase.frame.xyz)
-    if phase.frame == "world":
+    if isinstance(frame, Pose):
+        return frame.rotation, np.array(frame.xyz)
+    if frame == "world":
         return np.eye(3), np.zeros(3)
-    if phase.frame not in case.scene:
+    if frame not in case.scene:
         known = ["world", *case.scene]
-        raise ConfigError(
-            f"phase {name!r}: frame is world, a thing of the scene or a pose; {options(known, phase.frame)}"
-        )
-    pose = case.scene[phase.frame].pose
+        raise ConfigError(f"phase {name!r}: frame is world, a thing of the scene or a pose; {options(known, frame)}")
+    pose = case.scene[frame].pose
     return pose.rotation, np.array(pose.xyz)
 
 

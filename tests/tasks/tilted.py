@@ -1,0 +1,68 @@
+"""A list of phases that presses and slides on a plane, level or tilted."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from pliant import run
+from pliant.spatial import Array
+from pliant.studies.task.measure_list import within
+from pliant.tasks.task import Task
+from pliant.telemetry.log import Log
+
+FORCE = 15.0  # N
+_HOME = np.array([0.7506, 0.0458, 0.0233])  # m, of the tool of iiwa14
+_RADIUS, _GAP = 0.015, 0.02  # m
+
+
+def normal_of(tilt: float) -> Array:
+    """(3,) of a plane tilted by degrees about the world's y axis."""
+    return np.array([math.sin(math.radians(tilt)), 0.0, math.cos(math.radians(tilt))])
+
+
+def tilted_task(tilt: float, controller: str, *, late: bool, **more: Any) -> Task:
+    """Down to the plane, 15 N at rest, then 15 N along a way of 50 mm. Args: late: whether the arm is imperfect."""
+    place = _HOME - (_GAP + _RADIUS) * normal_of(tilt)
+    below = 0.01  # m, of the frame: 5 mm into the plane
+    values: dict[str, Any] = {
+        "robot": "iiwa14",
+        "controller": controller,
+        "scene": {"plane": {"shape": "plane", "pose": {"xyz": place.tolist(), "rpy": (0.0, tilt, 0.0)}}},
+        "truth": {"imperfections": "p3" if late else "none"},
+        "planner": {"speed": 0.1},
+        "phase": [
+            {
+                "name": "down",
+                "frame": "plane",
+                "target": (0.0, 0.0, below),
+                "wrench": (0.0, 0.0, FORCE),
+                "until": {"any": [{"force": 0.8 * FORCE}, {"timeout": 2.0}]},
+                "else": "next",
+            },
+            {"name": "hold", "settle": 0.4, "duration": 0.9},
+            {"name": "slide", "target": (0.04, 0.03, below), "settle": 0.2, "duration": 0.9},
+        ],
+    }
+    if not late:
+        values["timing"] = {"sensing_delay": 0.0, "computation_delay": 0.0}
+    return Task.model_validate({**values, **more})
+
+
+def force_errors(log: Log, tilt: float) -> dict[str, float]:
+    """Phase → mean |F_n − F_d|, N, along the true normal; infinite where the phase was not reached."""
+    time, felt = log.time("measurement/q"), log["truth/tool/wrench"][:, :3] @ normal_of(tilt)
+    found: dict[str, float] = {}
+    for phase, settle in (("hold", 0.4), ("slide", 0.2)):
+        inside = within(log, time, phase, settle)
+        found[phase] = float(np.mean(np.abs(felt[inside] - FORCE))) if inside.any() else math.inf
+    return found
+
+
+def run_tilted(tilt: float, controller: str, *, late: bool, **more: Any) -> dict[str, float]:
+    """The force errors of a run that did not fail."""
+    made = run(tilted_task(tilt, controller, late=late, **more))
+    assert made.failure is None, made.failure
+    return force_errors(made.log, tilt)
