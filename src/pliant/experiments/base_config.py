@@ -57,6 +57,9 @@ class CaseConfig(Config):
     own_metrics: tuple[str, ...] = Field(
         default=(), description="metrics beside the study's: names, my_module:metric or my_file.py:metric"
     )
+    log_scene: bool = Field(
+        default=True, description="whether the log holds frames, shapes, paths and forces for 3-D views, at 30 Hz"
+    )
 
     @field_validator("own_metrics")
     @classmethod

@@ -14,10 +14,13 @@ from pliant.experiments.base import CaseConfig, Experiment, Result, Study
 from pliant.experiments.own_metrics import own_metrics
 from pliant.experiments.verdict import StartNotes, physical_verdict
 from pliant.interfaces import Observer
+from pliant.mujoco_model import spec_from_robot
 from pliant.signals import Tick
+from pliant.simulation import MujocoPlant
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import Log
 from pliant.telemetry.recorder import Recorder
+from pliant.telemetry.scene_topics import DrawnScene
 from pliant.telemetry.summary import Metric
 
 Progress = Callable[[float], None]
@@ -53,7 +56,10 @@ def run_case(
     wired = experiment or study.build(config)
     stem = file_stem(config)
     recorder = Recorder(
-        None if folder is None else folder / f"{stem}.mcap", run_info(study, config, wired), channels=wired.channels
+        None if folder is None else folder / f"{stem}.mcap",
+        run_info(study, config, wired),
+        channels=wired.channels,
+        scene=drawn_scene(wired) if folder is not None and config.log_scene else None,
     )
     ticks = round(run_length(config, wired) / wired.plant.period)
     notes = StartNotes()
@@ -85,6 +91,16 @@ def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> R
         torque_limits=tuple(experiment.robot.torque_limit),
         config=config.model_dump(mode="json"),
     )
+
+
+def drawn_scene(experiment: Experiment) -> DrawnScene:
+    """What 3-D views show of a run: robot and scene of a simulation, of any other plant the robot alone."""
+    plant: Any = experiment.plant
+    while not isinstance(plant, MujocoPlant) and hasattr(plant, "inner"):
+        plant = plant.inner
+    robot = experiment.robot
+    model = plant.model if isinstance(plant, MujocoPlant) else spec_from_robot(robot).compile()
+    return DrawnScene(model, robot.n)
 
 
 def file_stem(config: CaseConfig) -> str:

@@ -22,6 +22,7 @@ from pliant.telemetry.log import CLOCK, Log
 from pliant.telemetry.mcap.topics import PREFIX, units_of
 from pliant.telemetry.mcap.writer import McapFile
 from pliant.telemetry.plan import Block, RowLayout
+from pliant.telemetry.scene_topics import DrawnScene, SceneTopics
 from pliant.telemetry.schema import signature
 from pliant.telemetry.target import open_target, whole_seconds_below
 from pliant.telemetry.timing import Timing
@@ -45,6 +46,7 @@ class Recorder:
         *,
         channels: Sequence[Channel] = (),
         decimation: int = 1,
+        scene: DrawnScene | None = None,
     ) -> None:
         """Opens the file.
 
@@ -53,6 +55,7 @@ class Recorder:
             info: what the log says about the run.
             channels: units of diagnostics; a name may be a pattern, the first that fits counts.
             decimation: records every so many ticks, beginning with the first.
+            scene: adds frames and shapes for 3-D views, at 30 Hz and beside the loop; None: without.
 
         Raises:
             OutputError: the file cannot be opened.
@@ -72,6 +75,7 @@ class Recorder:
         self.timing = Timing()
         self._units: dict[str, str] = {}
         self._file = McapFile(self._stream)
+        self._scene = None if scene is None else SceneTopics(scene, self._file)
         self._file.add_metadata("pliant", metadata)
         self._phase = ""
         self._zero: int | None = None
@@ -224,9 +228,14 @@ class Recorder:
         if block.phase != self._phase:
             self._phase = block.phase
             self._file.add_text(f"{PREFIX}/reference/phase", int(times[0]), block.phase)
-        self._file.add_block(block.plan.topics, times, block.columns())
+        columns = block.columns()
+        self._file.add_block(block.plan.topics, times, columns)
+        if self._scene is not None:
+            self._scene.add(times, columns)
 
     def _finish(self, failure: str | None) -> None:
+        if self._scene is not None:
+            self._scene.finish()
         self._file.add_metadata("pliant.units", dict(sorted(self._units.items())))
         self._file.add_metadata("pliant.outcome", {"ticks": str(self._seen), "failure": failure or ""})
         self._file.finish()

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Literal
 
 from pliant.experiments.base import CaseConfig
-from pliant.live.page.visual_shapes import Look
 from pliant.simulation import Imperfections, Scene
 from pliant.spatial import Array
+from pliant.visual_shapes import Look
 
 
 class Queued:

@@ -10,6 +10,7 @@ from pliant.signals import Tick
 from pliant.telemetry.channels import Channel
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.recorder import Recorder
+from pliant.telemetry.scene_topics import DrawnScene
 
 
 class SwitchedRecorder:
@@ -29,14 +30,17 @@ class SwitchedRecorder:
         """File that is being written."""
         return None if self._recorder is None else self._recorder.path
 
-    def start(self, path: Path, info: RunInfo) -> None:
-        """Begins a log. One that was being written is finished first. Raises OutputError."""
+    def start(self, path: Path, info: RunInfo, scene: DrawnScene | None = None) -> None:
+        """Begins a log. One that was being written is finished first. Raises OutputError.
+
+        Args: scene: what 3-D views show; a scene that changes while it is recorded stays as it was there.
+        """
         self.stop()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise OutputError(f"the folder {path.parent} cannot be created: {error.strerror}") from error
-        self._recorder = Recorder(path, info, channels=self._channels)
+        self._recorder = Recorder(path, info, channels=self._channels, scene=scene)
 
     def stop(self, failure: str | None = None) -> Path | None:
         """Finishes the log. Returns its file; None if there was none. Raises OutputError if it could not be written."""

@@ -34,7 +34,8 @@ from pliant.live.loop.steered_plant import SteeredPlant
 from pliant.live.loop.steered_source import steered
 from pliant.live.loop.tuning import parameters_of, retuning, retuning_of_case
 from pliant.live.loop.watch import Watch
-from pliant.live.page.visual_shapes import looks_of
+from pliant.telemetry.scene_topics import DrawnScene
+from pliant.visual_shapes import looks_of
 
 
 class Session:
@@ -190,7 +191,8 @@ class Session:
         if message.path is None:
             self.finish_recording()
         else:
-            self.recorder.start(message.path, run_info(self.study, self.config, self.experiment))
+            scene = DrawnScene(self._physics.model, self.experiment.robot.n) if self.config.log_scene else None
+            self.recorder.start(message.path, run_info(self.study, self.config, self.experiment), scene)
         self.watch.refresh(now=True)
 
     def finish_recording(self, failure: str | None = None) -> None:

@@ -13,10 +13,10 @@ from pliant.live.loop.pace import PaceReport
 from pliant.live.loop.requests import Desk
 from pliant.live.page.curves import Columns
 from pliant.live.page.picture import picture
-from pliant.live.page.visual_shapes import Poser
 from pliant.robot import Robot
 from pliant.signals import Tick
 from pliant.simulation import MujocoPlant
+from pliant.visual_shapes import Poser
 
 SCENE_PERIOD = 1.0 / 30.0  # s of wall time
 CURVE_PERIOD = 0.1  # s of wall time between two pieces of the curves

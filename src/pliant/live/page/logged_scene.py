@@ -12,12 +12,12 @@ from pliant.experiments.registry import get_study, study_names
 from pliant.live.link.messages import Picture
 from pliant.live.loop.steered_plant import physics_of
 from pliant.live.page.curves import Columns
-from pliant.live.page.visual_shapes import Poser, looks_of
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
 from pliant.simulation import Scene
 from pliant.spatial import Array
 from pliant.telemetry.log import Log
+from pliant.visual_shapes import Poser, looks_of
 
 _CURVE_SAMPLES = 0.02  # s between two points of a curve
 

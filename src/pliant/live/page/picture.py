@@ -8,10 +8,10 @@ import numpy as np
 
 from pliant.live.link.messages import Picture
 from pliant.live.page.curves import Columns
-from pliant.live.page.visual_shapes import Poser
 from pliant.signals import Reference, Tick
 from pliant.simulation import Push
 from pliant.spatial import Array
+from pliant.visual_shapes import Poser
 
 _NOTHING = np.zeros(3)
 

@@ -12,9 +12,9 @@ import viser
 
 from pliant.live.link.messages import Picture
 from pliant.live.page.shapes import add_look, cone
-from pliant.live.page.visual_shapes import Look
 from pliant.simulation import Part, Plane, Scene
 from pliant.spatial import Array, frame_with_z_along, quaternion
+from pliant.visual_shapes import Look
 
 MEASURED, ASKED, PUSH = (194, 47, 47), (11, 111, 184), (178, 73, 162)
 _TOOL, _REFERENCE, _PREDICTED = (217, 95, 14), (11, 111, 184), (20, 143, 107)

@@ -9,8 +9,8 @@ import numpy.typing as npt
 import trimesh
 import viser
 
-from pliant.live.page.visual_shapes import Look
 from pliant.spatial import Array
+from pliant.visual_shapes import Look
 
 _GHOST = (90, 150, 210)
 _GHOST_OPACITY = 0.18

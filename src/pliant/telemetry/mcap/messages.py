@@ -28,7 +28,8 @@ _POINT = {"geometry_msgs/Point": "float64 x\nfloat64 y\nfloat64 z"}
 _LINEAR_ANGULAR = "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular"
 
 
-def _define(main: str, *parts: Mapping[str, str]) -> str:
+def define(main: str, *parts: Mapping[str, str]) -> str:
+    """A definition with those that it needs, as MCAP files carry it. Args: parts: type → its fields."""
     text = main
     for part in parts:
         for name, body in part.items():
@@ -39,18 +40,18 @@ def _define(main: str, *parts: Mapping[str, str]) -> str:
 DEFINITIONS: Mapping[str, str] = {
     "std_msgs/msg/Float64": "float64 data",
     "std_msgs/msg/String": "string data",
-    "std_msgs/msg/Float64MultiArray": _define(
+    "std_msgs/msg/Float64MultiArray": define(
         "std_msgs/MultiArrayLayout layout\nfloat64[] data",
         {
             "std_msgs/MultiArrayLayout": "std_msgs/MultiArrayDimension[] dim\nuint32 data_offset",
             "std_msgs/MultiArrayDimension": "string label\nuint32 size\nuint32 stride",
         },
     ),
-    "sensor_msgs/msg/JointState": _define(
+    "sensor_msgs/msg/JointState": define(
         _HEADER + "string[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort", _HEADER_PARTS
     ),
-    "geometry_msgs/msg/PointStamped": _define(_HEADER + "geometry_msgs/Point point", _HEADER_PARTS, _POINT),
-    "geometry_msgs/msg/PoseStamped": _define(
+    "geometry_msgs/msg/PointStamped": define(_HEADER + "geometry_msgs/Point point", _HEADER_PARTS, _POINT),
+    "geometry_msgs/msg/PoseStamped": define(
         _HEADER + "geometry_msgs/Pose pose",
         _HEADER_PARTS,
         {
@@ -59,13 +60,13 @@ DEFINITIONS: Mapping[str, str] = {
         },
         _POINT,
     ),
-    "geometry_msgs/msg/TwistStamped": _define(
+    "geometry_msgs/msg/TwistStamped": define(
         _HEADER + "geometry_msgs/Twist twist", _HEADER_PARTS, {"geometry_msgs/Twist": _LINEAR_ANGULAR}, _VECTOR
     ),
-    "geometry_msgs/msg/AccelStamped": _define(
+    "geometry_msgs/msg/AccelStamped": define(
         _HEADER + "geometry_msgs/Accel accel", _HEADER_PARTS, {"geometry_msgs/Accel": _LINEAR_ANGULAR}, _VECTOR
     ),
-    "geometry_msgs/msg/WrenchStamped": _define(
+    "geometry_msgs/msg/WrenchStamped": define(
         _HEADER + "geometry_msgs/Wrench wrench",
         _HEADER_PARTS,
         {"geometry_msgs/Wrench": "geometry_msgs/Vector3 force\ngeometry_msgs/Vector3 torque"},

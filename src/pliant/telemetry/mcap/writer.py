@@ -37,12 +37,14 @@ from mcap.records import (
 from pliant.spatial import Array
 from pliant.telemetry.mcap.messages import DEFINITIONS, encode
 from pliant.telemetry.mcap.packing import put_numbers, put_values, record_bytes
+from pliant.telemetry.mcap.scene_messages import SCENE_DEFINITIONS
 from pliant.telemetry.mcap.topics import Topic
 
 _MAGIC = b"\x89MCAP0\r\n"
 _MESSAGE = struct.Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
 _ENVELOPE = 22  # bytes of a message record before its data, counted by its length field
 _ZSTD_LEVEL = 1  # numbers with noise hardly compress: speed counts
+_DEFINITIONS = {**DEFINITIONS, **SCENE_DEFINITIONS}
 _LIBRARY = f"pliant with mcap {mcap.__version__}, mcap-ros2-support {mcap_ros2.__version__}"
 
 
@@ -100,13 +102,21 @@ class McapFile:
 
     def add_text(self, topic: str, time: int, text: str) -> None:
         """Writes one std_msgs/String at a log time in ns."""
+        self.add_messages(topic, "std_msgs/msg/String", [(time, encode("std_msgs/msg/String", {"data": text}))])
+
+    def add_messages(self, topic: str, datatype: str, messages: Sequence[tuple[int, bytes]]) -> None:
+        """Writes messages that are encoded already, as one chunk. Args: messages: log time in ns and CDR of each."""
+        if not messages:
+            return
         chunk = _OpenChunk()
-        channel = self._channel(topic, "std_msgs/msg/String", b"", dict, chunk)
-        head = bytes(chunk.head.end())
-        data = encode("std_msgs/msg/String", {"data": text})
-        sequence = self._next(channel, 1)
-        record = _MESSAGE.pack(Opcode.MESSAGE, _ENVELOPE + len(data), channel, sequence, time, time) + data
-        self._add_chunk(head + record, {channel: np.array([[time, len(head)]], dtype=np.uint64)}, time, time)
+        channel = self._channel(topic, datatype, b"", dict, chunk)
+        data = bytearray(chunk.head.end())
+        first, index = self._next(channel, len(messages)), list[tuple[int, int]]()
+        for place, (time, body) in enumerate(messages):
+            index.append((time, len(data)))
+            data += _MESSAGE.pack(Opcode.MESSAGE, _ENVELOPE + len(body), channel, first + place, time, time) + body
+        times = [time for time, _ in messages]
+        self._add_chunk(bytes(data), {channel: np.array(index, dtype=np.uint64)}, min(times), max(times))
 
     def finish(self) -> None:
         """Writes the index. Without it the file is readable up to its last block."""
@@ -145,7 +155,7 @@ class McapFile:
         if key in self._channels:
             return self._channels[key].id
         if datatype not in self._schemas:
-            schema = Schema(len(self._schemas) + 1, DEFINITIONS[datatype].encode(), "ros2msg", datatype)
+            schema = Schema(len(self._schemas) + 1, _DEFINITIONS[datatype].encode(), "ros2msg", datatype)
             self._schemas[datatype] = schema
             schema.write(chunk.head)
         channel = Channel(len(self._channels) + 1, topic, "cdr", metadata(), self._schemas[datatype].id)

@@ -1,4 +1,4 @@
-"""Shapes of everything in a scene, as the page draws them, and where they are at a configuration."""
+"""Shapes of everything in a scene, as people see them, and where they are at a configuration."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from pliant.spatial import Array
+from pliant.spatial import Array, quaternion
 
 Kind = Literal["sphere", "cylinder", "capsule", "box", "mesh"]
 
@@ -101,11 +101,16 @@ class Poser:
 
     def frame(self, name: str) -> Array | None:
         """Position (3,) in m of a frame at the configuration asked for last; None if there is no such frame."""
+        placement = self.placement(name)
+        return None if placement is None else placement[0]
+
+    def placement(self, name: str) -> tuple[Array, Array] | None:
+        """Position (3,) in m and quaternion (w, x, y, z) of a frame at the configuration asked for last, or None."""
         site = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_SITE, name)
         if site < 0:
             return None
         position: Array = self._data.site_xpos[site].copy()
-        return position
+        return position, quaternion(self._data.site_xmat[site].reshape(3, 3))
 
 
 def _is_robot(model: mujoco.MjModel, body: int, joints: int) -> bool:
