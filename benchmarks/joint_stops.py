@@ -25,9 +25,12 @@ from pliant.simulation import JointEffects, MujocoPlant
 
 
 def excess(
-    plant: MujocoPlant, joint: int, torque: float, seconds: float, at: float | None, speed: float = 0.0
+    plant: MujocoPlant, joint: int, torque: float, seconds: float, at: float | None = None, speed: float = 0.0
 ) -> np.ndarray:
-    """(k,) degrees (mm where the joint slides)."""
+    """(k,) excess of a joint over its limit, rad (m where it slides), while it is pushed.
+
+    Args: torque: N·m; at, speed: where and how fast it starts, rad and rad/s; None: at home and at rest.
+    """
     _, world = plant.init()
     if at is not None:
         world.data.qpos[joint], world.data.qvel[joint] = at, speed
@@ -40,7 +43,12 @@ def excess(
         beyond = plant.truth(world).limit_excess
         assert beyond is not None
         found.append(beyond[joint])
-    return np.degrees(found)
+    return np.array(found)
+
+
+def degrees(excess: np.ndarray) -> float:
+    """The largest, in degrees."""
+    return float(np.degrees(excess).max())
 
 
 def main(robots: list[str]) -> None:
@@ -61,10 +69,10 @@ def main(robots: list[str]) -> None:
             speed = speed if np.isfinite(speed) else 2.0  # rad/s
             for side, at in ((-1, lower), (1, upper)):
                 key = f"{label} {'+' if side > 0 else '-'}"
-                rest[key] = float(excess(plant, joint, side * limit, 0.5, at)[-100:].max())
-                fast[key] = float(excess(plant, joint, side * limit, 0.2, at, side * speed).max())
+                rest[key] = degrees(excess(plant, joint, side * limit, 0.5, at)[-100:])
+                fast[key] = degrees(excess(plant, joint, side * limit, 0.2, at, side * speed))
                 try:
-                    thrown[key] = float(excess(plant, joint, side * limit, 1.5, None).max())
+                    thrown[key] = degrees(excess(plant, joint, side * limit, 1.5))
                 except RunFailedError:
                     thrown[f"{key}, diverged"] = np.inf
         cells = [max(table.items(), key=lambda item: item[1]) for table in (rest, fast, thrown) if table]

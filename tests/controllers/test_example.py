@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
-from pathlib import Path
 
 import pytest
 
 from pliant.errors import RobotError
+from tests.examples import example
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "03_stack_on_your_urdf.py"
-
-
-def main(robot: str) -> None:
-    spec = importlib.util.spec_from_file_location(EXAMPLE.stem, EXAMPLE)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    module.main(robot)
+main = example("03_stack_on_your_urdf").main
 
 
 @pytest.mark.parametrize("robot", ["panda", "ur5e"])

@@ -2,29 +2,18 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
-from pathlib import Path
-from types import ModuleType
 
 import pytest
 
-FOLDER = Path(__file__).parents[2] / "examples"
-EXAMPLE = FOLDER / "05_force_feedback_mpc.py"
+from tests.examples import FOLDER, example
 
-
-def loaded(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+PRESSING = "05_force_feedback_mpc"
 
 
 @pytest.mark.parametrize("robot", ["iiwa14", "lwr4", "ur5e"])
 def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
-    loaded(EXAMPLE).main(robot)
+    example(PRESSING).main(robot)
     said = capsys.readouterr().out
     found = re.fullmatch(rf"{robot}: contact felt at ([\d.]+) s, asked 20 N, got ([\d.]+) ± ([\d.]+) N\n", said)
     assert found, said
@@ -35,14 +24,14 @@ def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixtur
 
 
 def test_it_is_short() -> None:
-    source = EXAMPLE.read_text().split('"""', 2)[2]
+    source = (FOLDER / f"{PRESSING}.py").read_text().split('"""', 2)[2]
     code = [line for line in source.splitlines() if line.strip() and not line.strip().startswith("#")]
     body = [line for line in code if not line.startswith(("import", "from"))]
     assert len(body) <= 40
 
 
 def test_compensation_presses_where_the_stock_controller_does_not(capsys: pytest.CaptureFixture[str]) -> None:
-    module = loaded(FOLDER / "06_offset_free_mpc.py")
+    module = example("06_offset_free_mpc")
     means: dict[str, float] = {}
     for which in ("offset-free", "stock"):
         module.main(which)

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from benchmarks.joint_stops import excess
 from pliant.errors import ConfigError
 from pliant.robot import Robot
 from pliant.robots import CATALOGUE, is_available
@@ -15,21 +16,6 @@ from pliant.signals import Command
 from pliant.simulation import JointEffects, JointStops, MujocoPlant
 
 ROBOTS = [name for name, entry in CATALOGUE.items() if is_available(entry)]
-
-
-def push(plant: MujocoPlant, joint: int, torque: float, seconds: float, at: float | None = None) -> np.ndarray:
-    """(k,) excess of a joint over its limit in rad while it is pushed; `at`: where it starts, rad."""
-    _, world = plant.init()
-    if at is not None:
-        world.data.qpos[joint] = at
-        mujoco.mj_step1(plant.model, world.data)
-    torques = np.zeros(plant.robot.n)
-    torques[joint] = torque
-    excess = []
-    for _ in range(round(seconds / plant.period)):
-        _, world = plant.step(Command(0.0, torques, np.zeros_like(torques)), world)
-        excess.append(plant.truth(world).limit_excess[joint])
-    return np.array(excess)
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -43,8 +29,8 @@ def test_no_joint_of_the_catalogue_stands_a_degree_beyond_its_limit(name: str) -
         limit = float(robot.torque_limit[joint])
         limit = limit if np.isfinite(limit) else 100.0  # N·m, where the file gives none
         for side, at in ((-1, lower), (1, upper))[: 2 if robot.n < 10 else 1]:
-            excess = push(plant, joint, side * limit, 0.1, at)[-20:]
-            assert 0.0 < excess.max() < np.deg2rad(1.0), (name, robot.joint_names[joint], side)
+            beyond = excess(plant, joint, side * limit, 0.1, at)[-20:]
+            assert 0.0 < beyond.max() < np.deg2rad(1.0), (name, robot.joint_names[joint], side)
 
 
 def test_the_default_stops_of_the_engine_do_not_hold() -> None:
@@ -53,7 +39,7 @@ def test_the_default_stops_of_the_engine_do_not_hold() -> None:
     plant = MujocoPlant(iiwa14, joints=JointEffects(compensation="gravity"))
     plant.model.jnt_solref[:] = [0.02, 1.0]
     plant.model.jnt_solimp[:] = [0.9, 0.95, 1e-3, 0.5, 2.0]
-    assert push(plant, 6, 40.0, 0.3, float(iiwa14.position_upper[6]))[-1] > np.deg2rad(20.0)
+    assert excess(plant, 6, 40.0, 0.3, float(iiwa14.position_upper[6]))[-1] > np.deg2rad(20.0)
 
 
 @pytest.mark.parametrize("joint", [0, 6])
@@ -64,8 +50,8 @@ def test_stiffness_is_in_newton_metres_per_radian(iiwa14: Robot, joint: int) -> 
     effects = JointEffects(damping=2.0, compensation="gravity")
     plant = MujocoPlant(iiwa14, start=q, joints=effects, stops=stops)
     torque = 0.5 * float(iiwa14.torque_limit[joint])
-    excess = push(plant, joint, torque, 0.6)[-1]
-    assert excess == pytest.approx(np.deg2rad(0.8) * 0.5, rel=1e-3)
+    beyond = excess(plant, joint, torque, 0.6)[-1]
+    assert beyond == pytest.approx(np.deg2rad(0.8) * 0.5, rel=1e-3)
 
 
 def bounce(robot: Robot, joint: int, speed: float, step: float = 5e-4) -> tuple[float, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from pliant.errors import ConfigError
 from pliant.spatial import exp3
 from pliant.surfaces import MeshSurface, SphereSurface
 from pliant.tasks.files import CATALOGUE
+from tests.examples import example
 from tests.surfaces.meshes import BALL, box, cap, written
 
 R, ORIGIN = exp3([0.2, -0.3, 0.5]), np.array([0.5, -0.1, 0.2])
@@ -94,12 +94,7 @@ def test_curvature_of_a_ball_and_of_a_hollow(shell: MeshSurface) -> None:
 
 
 def test_the_part_of_the_catalogue_is_that_of_the_example() -> None:
-    file = Path(__file__).parents[2] / "examples" / "07_concave_part.py"
-    spec = importlib.util.spec_from_file_location("concave_part", file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = example("07_concave_part")
     kept = trimesh.load(CATALOGUE / "parts" / "wave.ply", force="mesh")
     made = module.part()
     assert len(kept.faces) == len(made.faces)

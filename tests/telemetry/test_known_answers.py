@@ -5,7 +5,6 @@ A metric that is added has no answer here at first: the tests that compare names
 
 from __future__ import annotations
 
-import inspect
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -27,6 +26,7 @@ from pliant.studies.stack.measure import measure as stack
 from pliant.studies.task.measure import MEASURES, measured, signals_of
 from pliant.surfaces import PlaneSurface
 from pliant.telemetry import contact_metrics, metrics
+from tests.telemetry.own_functions import functions_of
 from tests.telemetry.ten_samples import K, columns, ten_samples
 
 PAIR = (columns(K, -2.0 * K), columns(1.0, 0.0))
@@ -68,13 +68,7 @@ FUNCTIONS: Mapping[str, tuple[Callable[[], Any], Any]] = {
 
 
 def test_every_function_has_a_known_answer() -> None:
-    own = {
-        name
-        for module in (metrics, contact_metrics)
-        for name, found in inspect.getmembers(module, inspect.isfunction)
-        if found.__module__ == module.__name__ and not name.startswith("_")
-    }
-    assert own == set(FUNCTIONS)
+    assert functions_of(metrics, contact_metrics) == set(FUNCTIONS)
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

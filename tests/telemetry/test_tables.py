@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import io
 import math
 from collections.abc import Callable, Mapping
@@ -17,6 +16,7 @@ from pliant.experiments.summarise import summarised
 from pliant.studies.polishing import STUDY
 from pliant.telemetry import markdown, proportion, table
 from pliant.telemetry.summary import CaseSummary, Metric, Summary
+from tests.telemetry.own_functions import functions_of
 
 AVERAGED = Metric("RMSE y", -3.5, "mm", 2.0, -3.0, std=1.25, runs=2)
 WORST = Metric("margin", -0.25, "J", None, -0.5, at_least=True, runs=3, worst=True)
@@ -87,13 +87,7 @@ ANSWERS: Mapping[str, tuple[Callable[[], Any], Any]] = {
 
 
 def test_every_function_that_makes_text_has_a_known_answer() -> None:
-    own = {
-        name
-        for module in (table, markdown, proportion, paper_tables)
-        for name, found in inspect.getmembers(module, inspect.isfunction)
-        if found.__module__ == module.__name__ and not name.startswith("_")
-    }
-    assert own == set(ANSWERS)
+    assert functions_of(table, markdown, proportion, paper_tables) == set(ANSWERS)
 
 
 @pytest.mark.parametrize("name", ANSWERS)

@@ -5,18 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from pliant.errors import ConfigError
 from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
+from pliant.quantity import quantity
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
 
 DEFAULT_SHARE = 0.14
 """of a joint's torque limit per period: the change that no controller need exceed in use"""
+TorqueStep = Annotated[
+    float | None,
+    quantity(
+        ...,
+        "1",
+        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
+        gt=0.0,
+        le=1e3,
+    ),
+]
+"""a key of configurations"""
 SPENDABLE = "energy/spendable"
 """channel of a controller that books its energy: J that a layer outside may spend in the next period"""
 CHANNELS: Mapping[str, HasUnit] = {"energy/step_limit": ChannelUnit("J"), "step_limit/exceeded": ChannelUnit("1")}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from pydantic import Field
 
 from pliant.mpc.config import Compensation, Contact, MpcConfig
@@ -13,8 +15,8 @@ _PHASES = "costs of each phase by name"
 _PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
 
 
-def _phases(track: Term, contact: Term, circle: Term) -> dict[str, PhaseCosts]:
-    return {
+def _phases(track: Term, contact: Term, circle: Term) -> Any:
+    phases = {
         "reach": PhaseCosts(translation=track),
         "track": PhaseCosts(translation=track),
         "contact": PhaseCosts(contact=True, translation=contact),
@@ -25,6 +27,7 @@ def _phases(track: Term, contact: Term, circle: Term) -> dict[str, PhaseCosts]:
         "follow": PhaseCosts(contact=True, translation=circle),
         "leave": PhaseCosts(translation=track),
     }
+    return Field(default=phases, min_length=1, description=_PHASES)
 
 
 def _translation(weight: float, activation: tuple[float, ...], per_node: float | None = None) -> Term:
@@ -37,25 +40,25 @@ _JOINT_VELOCITY = Term(weight=0.02, activation=(2.0,))
 _VELOCITY = Term(weight=0.05, terminal=1.0)
 
 
+def _costs(**own: Term) -> Costs:
+    """The terms that the controllers share, and those of one of them."""
+    shared = {
+        "posture": _POSTURE,
+        "joint_velocity": _JOINT_VELOCITY,
+        "torque": Term(weight=1e-4),
+        "rotation": Term(weight=20.0),
+        "velocity": _VELOCITY,
+    }
+    return Costs(**{**shared, **own})
+
+
 class ForceFeedbackMpc(MpcConfig):
     """Force feedback, [FFMPC] section V-C: the measured contact force is part of the state."""
 
     kind: Kind = Field(default="force_feedback", description=_KIND)
-    costs: Costs = Costs(
-        posture=_POSTURE,
-        joint_velocity=_JOINT_VELOCITY,
-        torque=Term(weight=1e-4),
-        rotation=Term(weight=20.0),
-        velocity=_VELOCITY,
-        force=Term(weight=0.01, terminal=0.05),
-        force_rate=Term(weight=6e-7),
-    )
-    phases: dict[str, PhaseCosts] = Field(
-        default=_phases(
-            _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
-        ),
-        min_length=1,
-        description=_PHASES,
+    costs: Costs = _costs(force=Term(weight=0.01, terminal=0.05), force_rate=Term(weight=6e-7))
+    phases: dict[str, PhaseCosts] = _phases(
+        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(150.0, _PLANE)
     )
 
 
@@ -75,21 +78,14 @@ class OffsetFreeMpc(ForceFeedbackMpc):
         force_integral=20.0,
         environment=True,
     )
-    costs: Costs = Costs(
+    costs: Costs = _costs(
         posture=Term(weight=0.002, activation=_POSTURE.activation),
-        joint_velocity=_JOINT_VELOCITY,
         torque=Term(weight=1e-5),
-        rotation=Term(weight=20.0),
-        velocity=_VELOCITY,
         force=Term(weight=0.03, terminal=0.15),
         force_rate=Term(weight=6e-7),
     )
-    phases: dict[str, PhaseCosts] = Field(
-        default=_phases(
-            _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(1000.0, _PLANE)
-        ),
-        min_length=1,
-        description=_PHASES,
+    phases: dict[str, PhaseCosts] = _phases(
+        _translation(10.0, _ALL, per_node=2.0), _translation(50.0, _PLANE), _translation(1000.0, _PLANE)
     )
 
 
@@ -98,18 +94,9 @@ class ClassicalMpc(MpcConfig):
 
     kind: Kind = Field(default="classical", description=_KIND)
     contact: Contact = Contact(baumgarte=(0.0, 10.0))
-    costs: Costs = Costs(
-        posture=_POSTURE,
-        joint_velocity=_JOINT_VELOCITY,
-        torque=Term(weight=1e-4),
-        rotation=Term(weight=20.0),
-        velocity=_VELOCITY,
-        force=Term(weight=1000.0),
-    )
-    phases: dict[str, PhaseCosts] = Field(
-        default=_phases(_translation(5.0, _ALL, per_node=2.0), _translation(2.0, _ALL), _translation(60.0, _PLANE)),
-        min_length=1,
-        description=_PHASES,
+    costs: Costs = _costs(force=Term(weight=1000.0))
+    phases: dict[str, PhaseCosts] = _phases(
+        _translation(5.0, _ALL, per_node=2.0), _translation(2.0, _ALL), _translation(60.0, _PLANE)
     )
 
 
@@ -118,19 +105,12 @@ class TorqueFeedbackMpc(MpcConfig):
 
     kind: Kind = Field(default="torque_feedback", description=_KIND)
     contact: Contact = Contact(baumgarte=(0.0, 10.0))
-    costs: Costs = Costs(
+    costs: Costs = _costs(
         posture=Term(weight=0.02, activation=(10.0, 10.0, 40.0, 10.0, 10.0, 50.0)),
-        joint_velocity=_JOINT_VELOCITY,
-        torque=Term(weight=1e-4),
         unfiltered_torque=Term(weight=1e-9),
         rotation=Term(weight=10.0),
-        velocity=_VELOCITY,
         force=Term(weight=1000.0),
     )
-    phases: dict[str, PhaseCosts] = Field(
-        default=_phases(
-            _translation(12.0, _ALL, per_node=5.0), _translation(200.0, _PLANE), _translation(200.0, _PLANE)
-        ),
-        min_length=1,
-        description=_PHASES,
+    phases: dict[str, PhaseCosts] = _phases(
+        _translation(12.0, _ALL, per_node=5.0), _translation(200.0, _PLANE), _translation(200.0, _PLANE)
     )

@@ -3,49 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant._mpc import Nodes
 from pliant.spatial import Array
-
-
-class NodeParameters(Protocol):
-    """What is written into a horizon; first axis: node. See `pliant._mpc.Nodes` for shapes and units."""
-
-    state_reference: Array
-    state_weight: Array
-    control_reference: Array
-    control_weight: Array
-    torque_gravity_weight: Array
-    control_gravity_weight: Array
-    task_rotation: Array
-    translation_reference: Array
-    translation_weight: Array
-    rotation_reference: Array
-    rotation_weight: Array
-    velocity_reference: Array
-    velocity_weight: Array
-    force_reference: Array
-    force_weight: Array
-    force_rate_weight: Array
-    stiffness: Array
-    damping: Array
-    anchor_translation: Array
-    anchor_rotation: Array
-    contact_active: NDArray[np.bool_]
-    torque_lower: Array
-    torque_upper: Array
-    force_lower: Array
-    force_upper: Array
-    friction: Array
-    sliding_friction: Array
 
 
 @dataclass
 class PlainNodes:
-    """Parameters of M nodes, for models that are evaluated in Python.
+    """Parameters of M nodes, for models that are evaluated in Python. See `pliant._mpc.Nodes` for shapes and units.
 
     A robot with a free base has nq ≠ nv: references of the state then have nq + nv entries, weights 2 nv.
     """
@@ -115,6 +83,9 @@ class PlainNodes:
             sliding_friction=np.full(count, np.inf),
         )
 
+
+NodeParameters = Nodes | PlainNodes
+"""what is written into a horizon, compiled or plain; first axis: node"""
 
 NAMES = tuple(field.name for field in fields(PlainNodes))
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pliant.experiments.base import CaseConfig
 from pliant.experiments.case import Case
 from pliant.experiments.result import Result
+from pliant.experiments.runner import file_stem
 from pliant.spatial import Array
-from pliant.telemetry.plots import dots, sweep
+from pliant.telemetry.plots import dots, save, sweep
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,6 +31,12 @@ class Drawn:
     """of its axis"""
     file: str
     """part of the file's name"""
+
+
+def saved_figures(config: CaseConfig, folder: Path, figures: Mapping[str, Figure | None]) -> list[Path]:
+    """Files of the figures of one run. Args: figures: end of the file's name → figure; None: could not be drawn."""
+    stem = file_stem(config)
+    return [save(one, folder / f"{stem}_{name}.png") for name, one in figures.items() if one is not None]
 
 
 def against_value(metrics: Sequence[Drawn], label: str, title: str, log_x: bool = False) -> CaseFigure:

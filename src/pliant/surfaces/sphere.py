@@ -2,38 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from pliant.errors import ConfigError
 from pliant.spatial import Array
-from pliant.surfaces.geometry import Nearest, SurfaceGeometry
+from pliant.surfaces.geometry import Nearest
+from pliant.surfaces.round import RoundSurface
 
 
 @dataclass(frozen=True)
-class SphereSurface(SurfaceGeometry):
-    """A sphere about the origin of its frame.
+class SphereSurface(RoundSurface):
+    """A sphere about the origin of its frame; hollow, a bowl."""
 
-    Raises:
-        ConfigError: on construction, when the radius is not above zero.
-    """
-
-    radius: float = 0.1
-    """m"""
-    hollow: bool = False
-    """the material is outside: a bowl"""
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not (math.isfinite(self.radius) and self.radius > 0.0):
-            raise ConfigError(f"the radius of a sphere must be above zero (m), got {self.radius}")
-
-    @property
-    def _side(self) -> float:
-        return -1.0 if self.hollow else 1.0
+    _shape: ClassVar[str] = "sphere"
 
     def near(self, point: npt.ArrayLike) -> Nearest:
         offset = np.asarray(point, dtype=np.float64) - self.origin

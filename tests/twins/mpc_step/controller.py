@@ -1,21 +1,21 @@
-"""Predictive control behind the controller interface: classical, torque feedback, force feedback."""
+"""The whole step of a predictive controller in Python: what `cpp/mpc/step` compiles."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from pliant.errors import ConfigError, SignalError, options
-from pliant.interfaces import Controller, Lookahead, Needs
+from pliant.interfaces import Controller
 from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
+from pliant.mpc.compensation import delays_of
 from pliant.mpc.config import MpcConfig
+from pliant.mpc.controller import MpcController
 from pliant.mpc.horizon import HorizonReference
 from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.make_problem import problem_from_robot
-from pliant.mpc.needs import needs_of
 from pliant.mpc.problem import MpcProblem
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
@@ -30,50 +30,21 @@ _TICK = 1e-9  # s; smaller than any period, larger than the rounding of a clock
 
 
 class TwinController(Controller[MpcState]):
-    """Solves the predictive problem every `config.period` and sends its first torque.
-
-    Between two solves it does what `config.between` says. Without a usable solution it follows the last usable plan to
-    its end, then compensates gravity with joint damping. No torque that is not finite leaves it.
-
-    With `config.compensation` it solves from the state at which its command takes effect and takes the estimated
-    disturbance out of what it sends; see `Compensator`.
-
-    Args:
-        robot: serial, at most 8 joints.
-        config: which model, costs, phases.
-        period: s from step to step; None: `config.period`, a solve at every step.
-
-    Raises:
-        RobotError: a robot that the kernel cannot take, an unknown frame.
-        ConfigError: weights that do not fit the robot, a stiffness outside the integrator's range, a delay that is not
-            a whole number of periods.
-    """
+    """What `MpcController` does, in Python: the same arguments, needs, channels and errors."""
 
     def __init__(self, robot: Robot, config: MpcConfig, period: float | None = None) -> None:
         self.robot, self.config = robot, config
         self.problem: MpcProblem = problem_from_robot(robot, config)
         self.chain = chain_from_robot(robot, config.frame, config.contact.frame)
+        self.delays = delays_of(config.compensation, period or config.period)
         self.model = kernel_model(self.problem)
         self.compensator = Compensator(config.compensation, self.problem, self.chain, period or config.period)
         self._safe = SafeTorque(robot.model, config.fallback_damping)
         self._limit = robot.torque_limit
 
-    @property
-    def needs(self) -> Needs:
-        """A preview from the time at which its command takes effect, and what its model and compensations read."""
-        wanted = needs_of(self.config)
-        lookahead = Lookahead(self.config.horizon, self.config.dt, self.compensator.lead)
-        return replace(wanted, preview=lookahead)
-
-    @property
-    def regulates_force(self) -> bool:
-        """Its costs hold the predicted force to the reference's in every phase with contact."""
-        return True
-
-    @property
-    def channels(self) -> Mapping[str, diagnostics.DiagnosticChannel]:
-        """Name → unit of every channel in `Command.diagnostics`."""
-        return diagnostics.CHANNELS
+    needs = MpcController.needs
+    regulates_force = MpcController.regulates_force
+    channels = MpcController.channels
 
     def init(self, estimate: Estimate) -> MpcState:
         """State before the first step.

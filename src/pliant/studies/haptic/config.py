@@ -16,7 +16,7 @@ from pydantic import Field, field_validator, model_validator
 
 from pliant.configuration import Config
 from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationConfig
-from pliant.controllers.step_limit import DEFAULT_SHARE
+from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
@@ -94,13 +94,7 @@ class HapticCaseConfig(CaseConfig):
     control: dict[str, Any] = Field(
         default={}, description="changes to the controller's parameters beside `impedance` and `exploration`"
     )
-    torque_step: float | None = quantity(
-        DEFAULT_SHARE,
-        "1",
-        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
-        gt=0.0,
-        le=1e3,
-    )
+    torque_step: TorqueStep = DEFAULT_SHARE
     start: tuple[float, ...] | None = quantity(None, "rad", "joint positions at the start; none: the robot's home")
     steps: tuple[Step, ...] = Field(
         min_length=1, description="what the user does, in order of time; the first one gives target and force"

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pliant.experiments.base import Experiment
-from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
+from pliant.studies.figures import saved_figures
 from pliant.studies.haptic.config import HapticCaseConfig
 from pliant.studies.haptic.measure import HapticSignals
 from pliant.telemetry.log import Log
-from pliant.telemetry.plots import Curve, Panel, save, time_series
+from pliant.telemetry.plots import Curve, Panel, time_series
 from pliant.telemetry.plots.pictures import picture_row
 
 if TYPE_CHECKING:
@@ -28,10 +28,7 @@ _CAMERA = Camera(look_at=(0.10, 0.0, 0.25), distance=1.15, azimuth=118.0, elevat
 
 def run_figures(config: HapticCaseConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
     """Forces, positions and commands over time ([HapFIC] Figs. 5 to 8), and the scene at its salient moments."""
-    stem = file_stem(config)
-    files = [save(history(config, log), folder / f"{stem}_history.png")]
-    scene = moments(config, experiment, log)
-    return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+    return saved_figures(config, folder, {"scene": moments(config, experiment, log), "history": history(config, log)})
 
 
 def history(config: HapticCaseConfig, log: Log) -> Figure:

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from pliant.configuration import merged
-from pliant.controllers.step_limit import DEFAULT_SHARE
+from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.mpc.presets import PRESETS
@@ -70,13 +70,7 @@ class PolishingConfig(CaseConfig):
         lt=1.0,
     )
     delay_error: float = quantity(0.0, "s", "of δ_o in controllers that predict: believed minus true", ge=-1.0, le=1.0)
-    torque_step: float | None = quantity(
-        DEFAULT_SHARE,
-        "1",
-        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
-        gt=0.0,
-        le=1e3,
-    )
+    torque_step: TorqueStep = DEFAULT_SHARE
     pushes: RepeatedPushes | None = Field(default=None, description="pushes from outside; none: nobody pushes")
     preset: Literal["tuned", "perfect", "paper"] = Field(
         default="tuned",

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pliant.experiments.base import Experiment
-from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
+from pliant.studies.figures import saved_figures
 from pliant.studies.polishing.config import FRAME, PolishingConfig
 from pliant.telemetry.log import Log
-from pliant.telemetry.plots import Curve, Panel, save, time_series
+from pliant.telemetry.plots import Curve, Panel, time_series
 from pliant.telemetry.plots.pictures import picture_row
 
 if TYPE_CHECKING:
@@ -27,10 +27,7 @@ _REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (
 
 def run_figures(config: PolishingConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
     """Force, position error, disturbance and solver over time; the arm at four moments."""
-    stem = file_stem(config)
-    files = [save(_history(config, log), folder / f"{stem}_history.png")]
-    scene = _moments(config, experiment, log)
-    return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+    return saved_figures(config, folder, {"scene": _moments(config, experiment, log), "history": _history(config, log)})
 
 
 def _history(config: PolishingConfig, log: Log) -> Figure:

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from pliant.configuration import Config
 from pliant.controllers.presets import SOFT_STACK, STIFF_STACK, TABLE_I_ROBOT, TABLE_I_SIMULATION
-from pliant.controllers.step_limit import DEFAULT_SHARE
+from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
@@ -121,13 +121,7 @@ class StackCaseConfig(CaseConfig):
         default={},
         description="changes to the controller's parameters, e.g. control.tasks.ee.translation.stiffness=8000",
     )
-    torque_step: float | None = quantity(
-        DEFAULT_SHARE,
-        "1",
-        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
-        gt=0.0,
-        le=1e3,
-    )
+    torque_step: TorqueStep = DEFAULT_SHARE
     model_mass_error: float = quantity(
         0.0,
         "1",

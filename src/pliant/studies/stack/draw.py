@@ -11,11 +11,11 @@ import numpy as np
 from pliant.controllers.attractor import Attractor, Law
 from pliant.controllers.profiles import ForceProfile
 from pliant.experiments.base import Experiment, Result
-from pliant.experiments.runner import file_stem
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import MujocoPlant
 from pliant.simulation.snapshot import Camera, Path3, Snapshot, render
 from pliant.spatial import Array
+from pliant.studies.figures import saved_figures
 from pliant.studies.stack.config import StackCaseConfig
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import (
@@ -40,7 +40,7 @@ _CAMERA = Camera(look_at=(0.0, -0.30, 0.34), distance=1.35, azimuth=28.0, elevat
 
 def run_figures(config: StackCaseConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
     """Posture difference, tool path, torques (the three panels of [Stack] Figs. 5 to 10), energies and the scene."""
-    stem, tool = file_stem(config), config.frames()[0]
+    tool = config.frames()[0]
     time = log.time("measurement/q")
     title = " · ".join(part for part in (config.case, config.controller, config.variant) if part)
     names = experiment.robot.joint_names
@@ -60,9 +60,7 @@ def run_figures(config: StackCaseConfig, experiment: Experiment, log: Log, folde
         entries = {name: log[f"energy/{name}"] for name in ("stored", "supplied", "dissipated", "clamped")}
         margin = log["ee/storage_margin"][:, :3].min(axis=1)
         figures["energy"] = energy_ledger(time, entries, margin, f"Energy ledger · {title}")
-    files = [save(figure, folder / f"{stem}_{name}.png") for name, figure in figures.items()]
-    scene = _scene(config, experiment, log, tool)
-    return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+    return saved_figures(config, folder, {"scene": _scene(config, experiment, log, tool), **figures})
 
 
 def _scene(config: StackCaseConfig, experiment: Experiment, log: Log, tool: str) -> Figure | None:

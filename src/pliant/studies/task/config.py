@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from pliant.configuration import merged
-from pliant.controllers.step_limit import DEFAULT_SHARE
+from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.base_config import Dial
@@ -28,12 +28,7 @@ class TaskCase(TaskParts, CaseConfig):
     duration: float = quantity(
         _WHOLE, "s", "after which the run ends in any case; by default the whole path is run", gt=0.0, le=_WHOLE
     )
-    torque_step: float | None = quantity(
-        DEFAULT_SHARE,
-        "1",
-        "largest change of a joint's torque per period, as a share of its limit; none: unbounded",
-        gt=0.0,
-    )
+    torque_step: TorqueStep = DEFAULT_SHARE
 
     @property
     def control_by_name(self) -> bool:

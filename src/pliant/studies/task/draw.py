@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.experiments.base import Experiment, Result
-from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
+from pliant.studies.figures import saved_figures
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.measure import TaskSignals
 from pliant.surfaces.unroll import unrolled
@@ -36,12 +36,13 @@ _EVERY = 10
 
 def run_figures(case: TaskCase, experiment: Experiment, log: Log, signals: TaskSignals, folder: Path) -> list[Path]:
     """Force and distance from the path over time; force error along the way; the robot at four moments."""
-    stem = file_stem(case)
-    files = [save(_history(case, log, signals), folder / f"{stem}_history.png")]
-    if np.count_nonzero(signals.following) > 2 * _EVERY:
-        files.append(save(_map(case, signals), folder / f"{stem}_map.png"))
-    scene = _moments(case, experiment, log, signals)
-    return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+    follows = np.count_nonzero(signals.following) > 2 * _EVERY
+    figures = {
+        "scene": _moments(case, experiment, log, signals),
+        "history": _history(case, log, signals),
+        "map": _map(case, signals) if follows else None,
+    }
+    return saved_figures(case, folder, figures)
 
 
 def comparison(results: Sequence[Result], folder: Path) -> list[Path]:
