@@ -1,12 +1,14 @@
-"""`pliant log`: what is in a log."""
+"""`pliant log`: what is in a log, and logs for other tools."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
 
 from pliant.telemetry.describe import describe
+from pliant.telemetry.lerobot import ACTION, export_lerobot
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import plot_log
 
@@ -24,3 +26,16 @@ def log_command(console: Console, file: Path, plot: bool, out: Path | None) -> N
     if plot:
         for figure in plot_log(log, out or file.with_suffix("")):
             console.print(f"figure  {figure}", markup=False, highlight=False, soft_wrap=True)
+
+
+def export_command(console: Console, files: Sequence[Path], folder: Path, fps: int, action: str | None) -> None:
+    """Writes logs as a data set of LeRobot. Args: action: channels, with commas between them; None: the torque.
+
+    Raises:
+        ConfigError: the logs do not fit together, or a channel is not there.
+        OutputError: a file cannot be read or written.
+    """
+    channels = ACTION if action is None else tuple(part.strip() for part in action.split(",") if part.strip())
+    logs = [Log.open(file) for file in files]
+    export_lerobot(logs, folder, fps=fps, action=channels)
+    console.print(f"LeRobot data set of {len(logs)} episodes  {folder}", markup=False, highlight=False, soft_wrap=True)

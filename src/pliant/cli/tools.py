@@ -16,14 +16,31 @@ from pliant.errors import ConfigError
 @program.app.command()
 @guarded
 def log(
-    file: Annotated[Path, typer.Argument(metavar="FILE.mcap", help="A log that pliant wrote.")],
+    words: Annotated[
+        list[str], typer.Argument(metavar="[export] FILE.mcap…", help="A log that pliant wrote; of an export several.")
+    ],
     plot: Annotated[bool, typer.Option("--plot", help="Draws the log into PNG files.")] = False,
+    lerobot: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where an export goes: a LeRobot data set, layout v2.1.")
+    ] = None,
+    fps: Annotated[int | None, typer.Option(help="Frames per second of an export.", show_default="50")] = None,
+    action: Annotated[
+        str | None, typer.Option(metavar="CHANNEL,…", help="Action of an export.", show_default="command/torque")
+    ] = None,
     out: Out = None,
 ) -> None:
-    """Says what is in a log: channels, units, rates, metrics."""
-    from pliant.cli.log import log_command
+    """Says what is in a log: channels, units, rates, metrics; or exports logs."""
+    from pliant.cli.log import export_command, log_command
 
-    log_command(program.out, file, plot, out)
+    given = [name for name, value in (("--lerobot", lerobot), ("--fps", fps), ("--action", action)) if value]
+    if words[0] == "export":
+        if lerobot is None or plot or out is not None:
+            raise ConfigError("write pliant log export FILE.mcap… --lerobot DIR [--fps N] [--action CHANNEL,…]")
+        export_command(program.out, [Path(word) for word in words[1:]], lerobot, fps or 50, action)
+        return
+    if given or len(words) > 1:
+        raise ConfigError(f"pliant log takes one file; {', '.join(given) or words[1]} belongs to pliant log export")
+    log_command(program.out, Path(words[0]), plot, out)
 
 
 @program.app.command()
