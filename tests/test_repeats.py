@@ -15,6 +15,9 @@ MOST_LINES = 10
 MOST_LINES_OF_A_BODY = 5
 """of two functions that are the same but for the names of their variables"""
 
+MOST_DEFAULTS = 3
+"""numbers that a configuration and the class it configures may not both give"""
+
 Code = list[tuple[int, str]]
 """number and text of the lines that count"""
 
@@ -71,6 +74,34 @@ def twins(files: Iterable[Path], most: int = MOST_LINES_OF_A_BODY) -> list[list[
     return [places for places in found.values() if len(places) > 1]
 
 
+def defaults(node: ast.ClassDef) -> dict[str, float]:
+    """Field → number that stands as its default in the text of a class, by itself or in a call of `quantity`."""
+    found: dict[str, float] = {}
+    for field in node.body:
+        if not (isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)):
+            continue
+        value = field.value
+        if isinstance(value, ast.Call):
+            given = [one.value for one in value.keywords if one.arg == "default"]
+            value = (value.args or given or [None])[0]
+        if isinstance(value, ast.Constant) and type(value.value) in (int, float):
+            found[field.target.id] = value.value
+    return found
+
+
+def given_twice(files: Iterable[Path]) -> list[str]:
+    """Pairs of a configuration and a plain class that give three fields or more the same default, each by itself."""
+    plain: dict[str, dict[str, float]] = {}
+    typed: dict[str, dict[str, float]] = {}
+    for path in files:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                made = {getattr(one.func, "id", "") for one in ast.walk(node) if isinstance(one, ast.Call)}
+                (typed if made & {"quantity", "Field"} else plain)[node.name] = defaults(node)
+    shared = {(one, two): set(a.items()) & set(b.items()) for one, a in typed.items() for two, b in plain.items()}
+    return [f"{one} ~ {two}" for (one, two), both in shared.items() if len(both) >= MOST_DEFAULTS]
+
+
 def sources(*suffixes: str) -> list[Path]:
     return sorted(
         path for folder in ("src/pliant", "cpp") for path in (ROOT / folder).rglob("*") if path.suffix in suffixes
@@ -85,6 +116,23 @@ def test_no_two_places_share_a_long_run_of_lines() -> None:
 
 def test_no_two_functions_do_the_same() -> None:
     assert twins(sources(".py")) == []
+
+
+def test_defaults_stand_once() -> None:
+    assert given_twice(sources(".py")) == []
+
+
+def test_defaults_that_stand_twice_would_be_noticed(tmp_path: Path) -> None:
+    plain = "class Spring:\n    k: float = 1.0\n    d: float = 2.0\n    n: int = 3\n\n\n"
+    fields = (
+        'k: float = quantity(1.0, "N/m", "K")',
+        'd: float = quantity(2.0, "N s/m", "D")',
+        "n: int = Field(default={n})",
+    )
+    file = tmp_path / "spring.py"
+    for n, found in (("3", ["SpringConfig ~ Spring"]), ("Spring.n", [])):
+        file.write_text(f"{plain}class SpringConfig(Config):\n    " + "\n    ".join(fields).format(n=n))
+        assert given_twice([file]) == found
 
 
 def test_a_run_that_stands_twice_would_be_noticed(tmp_path: Path) -> None:

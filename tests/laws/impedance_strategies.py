@@ -9,9 +9,10 @@ import numpy as np
 from hypothesis import strategies as st
 
 from pliant import _impedance
-from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.attractor import Law
 from pliant.controllers.energy_ledger import channel_table
 from pliant.controllers.passivity_account import AccountSettings
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array

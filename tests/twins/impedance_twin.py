@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pliant.controllers.attractor import Attractor, AttractorState, Law, PhaseSettings, converging_force
+from pliant.controllers.attractor import Attractor, AttractorState, Law, converging_force
 from pliant.controllers.passivity_account import ErrorMotion
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import ForceProfile
 from pliant.spatial import Array, log3
 from tests.rotations import left_jacobian_inverse

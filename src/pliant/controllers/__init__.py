@@ -1,7 +1,8 @@
 """Controllers that answer within one tick: fractal impedances, their stack, and baselines to compare with."""
 
-from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.attractor import Law
 from pliant.controllers.fractal_impedance import FractalImpedance
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.controllers.stack import Stack, StackState
 from pliant.controllers.task import FrameTask

@@ -6,7 +6,6 @@ tick.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -14,9 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.controllers.passivity_account import ACCOUNT, Account, AccountSettings, AccountState, ErrorMotion
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import ForceProfile
-from pliant.errors import ConfigError
 from pliant.spatial import Array
+
+_PHASES = PhaseSettings()
 
 
 class Law(StrEnum):
@@ -33,51 +34,6 @@ class Law(StrEnum):
     """[Stack] Algorithm 1 with the sign turned round; jumps where convergence starts, exceeds F_max past saturation"""
     SPRING = "spring"
     """no attractor: the profile alone, a spring without damping"""
-
-
-@dataclass(frozen=True)
-class PhaseSettings:
-    """How an axis decides between divergence and convergence."""
-
-    rate_cutoff: float = 80.0
-    """Hz, low-pass on the rate of the error"""
-    rate_floor: float = 0.5e-3
-    """m/s: rates below it do not tell the direction"""
-    rate_floor_angular: float = 0.5e-3
-    """rad/s"""
-    noise_time: float = 0.2
-    """s over which the noise of the error is learned; the threshold is at least 3σ of the filtered rate"""
-    hold_limit: float = 0.030
-    """s for which a phase is held while the rate is too small to tell; then the axis diverges"""
-    blend_time: float = 0.008
-    """s over which the force steps up where a convergence ends; 0: at once. Keep it much shorter than a swing, then it
-    costs no damping, and the joints feel no jolt"""
-
-    def __post_init__(self) -> None:
-        for name in ("rate_cutoff", "rate_floor", "rate_floor_angular", "noise_time"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise ConfigError(f"{name} must be finite and above zero, got {value}")
-        for name in ("hold_limit", "blend_time"):
-            if not getattr(self, name) >= 0.0:
-                raise ConfigError(f"{name} must not be negative, got {getattr(self, name)}")
-
-    def rate_gain(self, period: float) -> float:
-        """Share of a new difference in the filtered rate, for a period in s."""
-        return -math.expm1(-2.0 * math.pi * self.rate_cutoff * period)
-
-    def noise_gain(self, period: float) -> float:
-        """Share of a new sample in the noise variance, for a period in s."""
-        return -math.expm1(-period / self.noise_time)
-
-    def blend_step(self, period: float) -> float:
-        """Share of the force's step that one period in s takes away."""
-        return min(1.0, period / self.blend_time) if self.blend_time > 0.0 else 1.0
-
-    def noise_to_rate(self, period: float) -> float:
-        """1/s: standard deviation of the filtered rate per standard deviation of a white error."""
-        gain = self.rate_gain(period)
-        return gain / period * math.sqrt(2.0 / (2.0 - gain))
 
 
 Flags = npt.NDArray[np.bool_]
@@ -118,7 +74,7 @@ class Attractor:
     floor: Array
     """(k,) smallest rate that tells a direction, m/s or rad/s"""
     law: Law = Law.CAPPED
-    settings: PhaseSettings = PhaseSettings()
+    settings: PhaseSettings = _PHASES
     account: AccountSettings = ACCOUNT
     rotates: Flags | None = None
     """(k,) which axes are rotations; None: none"""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.attractor import Law
+from pliant.controllers.operational_space import Compensation, OperationalSpace
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import Shape
 from pliant.controllers.task import FrameTask
 from pliant.entries import ControllerConfig
@@ -90,25 +92,6 @@ class FrameTaskConfig(ControllerConfig):
         return FrameTask(self.frame, self.tuning(), label, self.profile)
 
 
-class PhaseConfig(ControllerConfig):
-    """How an axis decides between divergence and convergence. The defaults serve noise-free and noisy robots alike."""
-
-    rate_cutoff: float = quantity(80.0, "Hz", "low-pass on the rate of the error", gt=0.0)
-    rate_floor: float = quantity(0.5e-3, "m/s", "rates below it tell no direction", gt=0.0)
-    rate_floor_angular: float = quantity(0.5e-3, "rad/s", "rates below it tell no direction", gt=0.0)
-    noise_time: float = quantity(0.2, "s", "time over which the noise is learned", gt=0.0)
-    hold_limit: float = quantity(
-        0.030, "s", "how long a phase is held while the rate tells nothing; then the axis diverges", ge=0.0
-    )
-    blend_time: float = quantity(
-        0.008, "s", "time over which the force steps up where a convergence ends; 0: at once", ge=0.0
-    )
-
-    def settings(self) -> PhaseSettings:
-        """The same numbers as the controllers take them."""
-        return PhaseSettings(**self.model_dump())
-
-
 class StackConfig(ControllerConfig):
     """A stack of fractal impedances."""
 
@@ -116,7 +99,7 @@ class StackConfig(ControllerConfig):
         description="label → task; the label names the channels. None drops a task of the default"
     )
     law: Law = Field(default=Law.CAPPED, description="force on the way back to the target")
-    phases: PhaseConfig = Field(default=PhaseConfig(), description="thresholds of the phase logic")
+    phases: PhaseSettings = Field(default=PhaseSettings(), description="thresholds of the phase logic")
     joint_damping: float = quantity(
         0.0,
         "N·m s/rad",
@@ -156,20 +139,26 @@ class OperationalSpaceConfig(ControllerConfig):
     """Khatib's operational-space controller with a dynamically consistent posture."""
 
     frame: str = Field(default="flange", description="frame of the robot that follows the first task")
-    stiffness: float = quantity(400.0, "1/s²", "acceleration per position error", shown=(0.0, 4000.0), ge=0.0)
-    damping_ratio: float = quantity(1.0, "1", "1 is critical", shown=(0.0, 2.0), ge=0.0)
+    stiffness: float = quantity(
+        OperationalSpace.stiffness, "1/s²", "acceleration per position error", shown=(0.0, 4000.0), ge=0.0
+    )
+    damping_ratio: float = quantity(OperationalSpace.damping_ratio, "1", "1 is critical", shown=(0.0, 2.0), ge=0.0)
     posture_stiffness: float = quantity(
-        50.0, "1/s²", "joint acceleration per joint error, in what the task leaves free", shown=(0.0, 400.0), ge=0.0
+        OperationalSpace.posture_stiffness,
+        "1/s²",
+        "joint acceleration per joint error, in what the task leaves free",
+        shown=(0.0, 400.0),
+        ge=0.0,
     )
     singularity_damping: float = quantity(
-        0.02,
+        OperationalSpace.singularity_damping,
         "kg^-1/2",
         "δ in Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹: bounds the forces near singularities, costs accuracy",
         shown=(0.001, 1.0),
         gt=0.0,
     )
-    compensation: Literal["none", "coriolis", "gravity+coriolis"] = Field(
-        default="gravity+coriolis",
+    compensation: Compensation = Field(
+        default=OperationalSpace.compensation,
         description="what the model adds; without gravity where the robot compensates itself",
     )
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.attractor import Law
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.stack import Stack, StackState
 from pliant.controllers.task import FrameTask
 from pliant.interfaces import Controller, HasUnit, Needs

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pliant import _impedance
-from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.attractor import Law
 from pliant.controllers.passivity_account import ACCOUNT, AccountSettings
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import ForceProfile
 from pliant.spatial import Array
 

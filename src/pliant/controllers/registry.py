@@ -24,7 +24,7 @@ def build_stack(robot: Robot, config: StackConfig, period: float) -> Stack:
         config.frame_tasks(),
         period,
         law=config.law,
-        phases=config.phases.settings(),
+        phases=config.phases,
         joint_damping=config.joint_damping,
         force_damping=config.force_damping,
         gravity_compensation=config.gravity_compensation,

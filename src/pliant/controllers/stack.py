@@ -10,9 +10,10 @@ import numpy as np
 import pinocchio as pin
 
 from pliant import _impedance
-from pliant.controllers.attractor import Law, PhaseSettings
+from pliant.controllers.attractor import Law
 from pliant.controllers.energy_ledger import Diagnostics, LedgerChannel, channel_table, require_length
 from pliant.controllers.passivity_account import AccountSettings
+from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import linear_range
 from pliant.controllers.stack_input import check_stack, joints_that_move, target_of
 from pliant.controllers.task import FrameTask

@@ -10,6 +10,8 @@ from pliant.estimation.tool_identification import CONDITION_LIMIT, LEAST_POSES, 
 from pliant.robot import Robot
 from pliant.spatial import Array, skew
 
+POSES, JOINTS, SHARE = 8, 3, 0.8
+"""number of poses, of the last joints that move, and share of their range, where nobody asks for others"""
 _CANDIDATES = 400
 _REGULAR = 0.25  # least share of the home's smallest singular value that a pose and the way to it may have
 
@@ -17,10 +19,10 @@ _REGULAR = 0.25  # least share of the home's smallest singular value that a pose
 def identification_poses(
     robot: Robot,
     sensor_frame: str,
-    n: int = 8,
+    n: int = POSES,
     *,
-    joints: int = 3,
-    share: float = 0.8,
+    joints: int = JOINTS,
+    share: float = SHARE,
     lowest: float | None = None,
     seed: int = 0,
 ) -> Array:

@@ -32,6 +32,8 @@ from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
 from pliant.surfaces import PlaneSurface, SurfaceGeometry
 
+GAIN = 30.0
+"""rad/s: k of an observer where nobody asks for another one"""
 TorqueSource = Literal["sent", "measured"]
 ContactShare = Literal["all", "normal", "none"]
 Compensation = Literal["none", "gravity", "gravity+coriolis"]
@@ -89,7 +91,7 @@ class MomentumObserver(Estimator[MomentumState]):
         inner: Estimator[Any],
         robot: Robot,
         *,
-        gain: float = 30.0,
+        gain: float = GAIN,
         torque: TorqueSource = "sent",
         contact: ContactShare = "normal",
         normal: npt.ArrayLike | SurfaceGeometry = (0.0, 0.0, 1.0),

@@ -11,6 +11,7 @@ from pliant import loop
 from pliant.configuration import Config
 from pliant.errors import RobotError, RunFailedError, options
 from pliant.estimation import DirectEstimator, ToolIdentification, identification_poses, identify_tool
+from pliant.estimation.identification_poses import JOINTS, POSES, SHARE
 from pliant.interfaces import Controller, Estimator, Plant
 from pliant.quantity import quantity
 from pliant.references.postures.posture_tour import PostureTour
@@ -24,9 +25,9 @@ class IdentifyToolConfig(Config):
 
     sensor_frame: str = Field(default="flange", description="frame of the force/torque sensor")
     task_frame: str | None = Field(default=None, description="frame of the reference's task; None: the sensor's")
-    poses: int = Field(default=8, ge=4, le=1000, description="number of poses; more make the uncertainty smaller")
-    joints: int = Field(default=3, ge=1, le=100, description="how many of the last joints move")
-    share: float = quantity(0.8, "1", "of each joint's range that is used", gt=0.0, le=1.0)
+    poses: int = Field(default=POSES, ge=4, le=1000, description="number of poses; more make the uncertainty smaller")
+    joints: int = Field(default=JOINTS, ge=1, le=100, description="how many of the last joints move")
+    share: float = quantity(SHARE, "1", "of each joint's range that is used", gt=0.0, le=1.0)
     lowest: float | None = quantity(None, "m", "least height of the sensor; None: 0.1 m below home", ge=-10.0, le=10.0)
     move: float = quantity(2.0, "s", "from pose to pose", ge=0.01, le=1e3)
     settle: float = quantity(0.6, "s", "rest before reading", ge=0.01, le=1e3)

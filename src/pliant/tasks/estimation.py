@@ -7,6 +7,8 @@ from typing import Literal
 from pydantic import Field
 
 from pliant.configuration import Config
+from pliant.estimation.joint_acceleration import JointAcceleration
+from pliant.estimation.momentum_observer import GAIN
 from pliant.quantity import quantity
 
 
@@ -22,7 +24,7 @@ class Estimation(Config):
         le=100.0,
     )
     observer_gain: float = quantity(
-        30.0,
+        GAIN,
         "rad/s",
         "of the momentum observer, which runs where the controller asks for a disturbance",
         gt=0.0,
@@ -32,7 +34,7 @@ class Estimation(Config):
         None, "Hz", "of a Butterworth filter of the contact wrench; none: unfiltered", gt=0.0, le=1e5
     )
     acceleration_cutoff: float = quantity(
-        200.0,
+        JointAcceleration.cutoff,
         "Hz",
         "of the joint accelerations with which the inertia of what the force sensor carries is taken off;"
         " higher is less late and lets more of the velocities' noise through",

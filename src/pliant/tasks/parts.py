@@ -11,11 +11,15 @@ from pydantic import Field, model_validator
 
 from pliant.configuration import Config
 from pliant.quantity import quantity
+from pliant.references.surface_task import SurfaceTaskSettings
+from pliant.references.toolpaths.toolpath import PathMotion
+from pliant.robots.tool import Tool
 from pliant.spatial import Array, rpy
 from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 from pliant.tasks.draws import Drawn, bounds
 
 Vector = tuple[float, float, float]
+_USUAL = SurfaceTaskSettings()
 
 
 class Pose(Config):
@@ -33,11 +37,13 @@ class Pose(Config):
 class ToolConfig(Config):
     """A rigid tool on the flange whose end is a ball."""
 
-    mass: float = quantity(0.4, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
-    length: float = quantity(0.2, "m", "from the flange along its z axis to the middle of the ball", gt=0.0, le=2.0)
+    mass: float = quantity(Tool.mass, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
+    length: float = quantity(
+        Tool.length, "m", "from the flange along its z axis to the middle of the ball", gt=0.0, le=2.0
+    )
     radius: float = quantity(0.015, "m", "of the ball that touches", gt=0.0, le=0.5)
-    frame: str = Field(default="tool", min_length=1, description="name of the contact frame")
-    parent: str = Field(default="flange", min_length=1, description="frame that carries the tool")
+    frame: str = Field(default=Tool.frame, min_length=1, description="name of the contact frame")
+    parent: str = Field(default=Tool.parent, min_length=1, description="frame that carries the tool")
 
 
 class Sensor(Config):
@@ -103,8 +109,10 @@ class PathConfig(Config):
     spacing: float = quantity(0.02, "m", "largest distance of two lines of a raster or spiral", ge=1e-4, le=1.0)
     turns: float = quantity(1.0, "1", "how often a circle, square or lemniscate is drawn", gt=0.0, le=1000.0)
     time: float = quantity(5.0, "s", "how long the pattern `hold` stays", gt=0.0, le=3600.0)
-    speed: float = quantity(0.05, "m/s", "on the surface", ge=1e-4, le=5.0)
-    acceleration: float = quantity(0.5, "m/s²", "of starts, stops and bends: corners are rounded to keep it", gt=0.0)
+    speed: float = quantity(PathMotion.speed, "m/s", "on the surface", ge=1e-4, le=5.0)
+    acceleration: float = quantity(
+        PathMotion.acceleration, "m/s²", "of starts, stops and bends: corners are rounded to keep it", gt=0.0
+    )
     file: str | None = Field(
         default=None, description="CSV with x, y [, z, time, speed, force], or APT; beside the task"
     )
@@ -168,14 +176,16 @@ class Force(Config):
 class Phases(Config):
     """What comes before and after the path."""
 
-    stand_off: float = quantity(0.05, "m", "over the surface, where the run starts", gt=0.0, le=1.0)
-    approach_speed: float = quantity(0.05, "m/s", "down to the surface, until contact is felt", gt=0.0, le=1.0)
-    search: float = quantity(
-        0.03, "m", "above and below the believed surface, where contact is looked for", gt=0.0, le=0.5
+    stand_off: float = quantity(_USUAL.stand_off, "m", "over the surface, where the run starts", gt=0.0, le=1.0)
+    approach_speed: float = quantity(
+        _USUAL.approach_speed, "m/s", "down to the surface, until contact is felt", gt=0.0, le=1.0
     )
-    press: float = quantity(0.5, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
-    release: float = quantity(0.2, "s", "in which the last force goes to zero, at rest", gt=0.0, le=60.0)
-    leave: float = quantity(0.5, "s", "in which the tool is lifted by stand_off at the end", gt=0.0, le=60.0)
+    search: float = quantity(
+        _USUAL.search, "m", "above and below the believed surface, where contact is looked for", gt=0.0, le=0.5
+    )
+    press: float = quantity(_USUAL.press, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
+    release: float = quantity(_USUAL.release, "s", "in which the last force goes to zero, at rest", gt=0.0, le=60.0)
+    leave: float = quantity(_USUAL.leave, "s", "in which the tool is lifted by stand_off at the end", gt=0.0, le=60.0)
 
 
 class TimingConfig(Config):

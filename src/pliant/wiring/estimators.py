@@ -22,6 +22,7 @@ from pliant.estimation import (
     Tare,
     WrenchEstimator,
 )
+from pliant.estimation.momentum_observer import GAIN
 from pliant.interfaces import Estimator, Needs
 from pliant.robot import Robot
 
@@ -46,13 +47,13 @@ class SensorFilters:
     """Hz, of a Butterworth filter of contact wrenches; None: unfiltered"""
     joint_memory: float | None = None
     """s, of the joint state filter; 0: none; None: 0.3 s for controllers that want calm positions"""
-    observer_gain: float = 30.0
+    observer_gain: float = GAIN
     """rad/s, of the momentum observer"""
     carried: Mapping[str, CarriedMass] = field(default_factory=dict[str, CarriedMass])
     """sensor → what it is known to carry"""
     contact_frames: Mapping[str, str] = field(default_factory=dict[str, str])
     """sensor → the frame beyond it that touches"""
-    acceleration_cutoff: float = 200.0
+    acceleration_cutoff: float = JointAcceleration.cutoff
     """Hz, of the joint accelerations with which what a sensor carries is taken off"""
     tare: Literal["weight", "bias"] | None = None
     """what to do at the start about what the force sensor carries and nobody named; None: nothing"""

@@ -20,9 +20,9 @@ class SurfaceForm(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    stiffness: float = quantity(1e4, "N/m", "force per penetration", shown=(500.0, 5e4), gt=0.0)
-    damping: float = quantity(1e2, "N s/m", "force per speed of penetration", shown=(0.0, 500.0), ge=0.0)
-    friction: float = quantity(0.5, "1", "Coulomb coefficient", shown=(0.0, 1.5), ge=0.0)
+    stiffness: float = quantity(..., "N/m", "force per penetration", shown=(500.0, 5e4), gt=0.0)
+    damping: float = quantity(..., "N s/m", "force per speed of penetration", shown=(0.0, 500.0), ge=0.0)
+    friction: float = quantity(..., "1", "Coulomb coefficient", shown=(0.0, 1.5), ge=0.0)
 
 
 class PlaneForm(SurfaceForm):
