@@ -21,7 +21,7 @@ STACK = get_study("stack")
 def test_every_compared_controller_has_a_search_on_the_plant_of_the_case() -> None:
     for case in ("figure8-gazebo", "figure8-hardware"):
         for controller in ("stack", "spring", "operational-space"):
-            tuning = STACK.tuning(controller, case)
+            tuning = STACK.search(controller, case)
             (run,) = tuning.runs
             assert (run.case, run.controller) == (case, controller)
             merged(run, tuning.changes(tuning.start))  # possible
@@ -34,7 +34,7 @@ def test_every_compared_controller_has_a_search_on_the_plant_of_the_case() -> No
 def test_a_search_of_polishing_has_the_delay_of_its_case() -> None:
     polishing = get_study("polishing")
     for case, delay in (("tables-2-3-4", 0.0), ("tables-2-3-4-delayed", 5e-3)):
-        runs = polishing.tuning("torque-feedback-mpc", case).runs
+        runs = polishing.search("torque-feedback-mpc", case).runs
         assert {run.imperfections.computation_delay for run in runs} == {delay}
 
 

@@ -126,11 +126,11 @@ def test_the_tables_have_the_runs_that_the_study_promises() -> None:
 def test_what_is_tuned_on_is_not_in_the_tables() -> None:
     seen = {run.seed for case in CASES for run in STUDY.runs(case)}
     for controller in ALL:
-        tuning = STUDY.tuning(controller)
+        tuning = STUDY.search(controller)
         assert seen.isdisjoint(run.seed for run in tuning.runs)
         merged(tuning.runs[0], tuning.changes(tuning.start)).parameters()
     with pytest.raises(ConfigError, match="no controller"):
-        STUDY.tuning("clasical-mpc")
+        STUDY.search("clasical-mpc")
 
 
 def test_the_controller_is_told_the_delays_of_its_robot_and_their_error() -> None:

@@ -17,7 +17,7 @@ from pliant.errors import RunFailedError
 from pliant.experiments import registry
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
 from pliant.experiments.case import Case, seeded
-from pliant.experiments.tuning import Range, Tuning
+from pliant.experiments.parameter_search import ParameterSearch, Range
 from pliant.interfaces import Controller, Estimator, Plant, ReferenceSource
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Measurement, Reference
@@ -115,10 +115,10 @@ class ToyStudy(Study[ToyConfig]):
     def figures(self, config: ToyConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return []
 
-    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+    def search(self, controller: str, case: str | None = None) -> ParameterSearch:
         if controller == "other":
-            return super().tuning(controller)
-        return Tuning(
+            return super().search(controller)
+        return ParameterSearch(
             {"gains.a": Range(1e-3, 1e2, log=True), "gains.b": Range(-10.0, 10.0)},
             [self.case(case or "fine")],
             lambda results: _mean(results),

@@ -11,9 +11,9 @@ from typer.testing import CliRunner
 from pliant.cli.app import app
 from pliant.configuration import merged
 from pliant.experiments.base import Result
-from pliant.experiments.search import find_tuning
+from pliant.experiments.search import find_search
+from pliant.studies.task.search import FIRST_SEED, objective
 from pliant.studies.task.study import study_of
-from pliant.studies.task.tuning import FIRST_SEED, objective
 from pliant.telemetry.summary import Metric
 
 CLI = CliRunner()
@@ -79,9 +79,9 @@ def test_events_at_drawn_times_are_checked_too() -> None:
 
 @pytest.mark.parametrize(("name", "controller"), [("floor", "haptic"), ("figure8", "stack"), ("push-box", "haptic")])
 def test_a_list_is_searched_as_any_task(name: str, controller: str) -> None:
-    tuning = find_tuning(study_of(name), controller)
-    assert any(key.endswith("stiffness") for key in tuning.parameters)
-    assert all(run.seed >= FIRST_SEED for run in tuning.runs)
+    sought = find_search(study_of(name), controller)
+    assert any(key.endswith("stiffness") for key in sought.parameters)
+    assert all(run.seed >= FIRST_SEED for run in sought.runs)
 
 
 def test_a_search_on_a_list_writes_what_run_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

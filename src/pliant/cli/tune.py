@@ -20,11 +20,11 @@ from pliant.configuration import merged
 from pliant.experiments.config import assigned
 from pliant.experiments.lock import locked
 from pliant.experiments.open_pool import open_pool
+from pliant.experiments.parameter_search import PENALTY, ParameterSearch
 from pliant.experiments.parquet import write_parquet
 from pliant.experiments.registry import get_study
-from pliant.experiments.search import Trial, find_tuning, require_optuna, search
+from pliant.experiments.search import Trial, find_search, require_optuna, search
 from pliant.experiments.sweep import check_buildable
-from pliant.experiments.tuning import PENALTY, Tuning
 from pliant.telemetry.output import output_folder, write_text
 from pliant.telemetry.table import number
 
@@ -48,39 +48,41 @@ def tune_command(
         PliantError: bad input; nothing was run.
     """
     require_optuna()
-    tuning = find_tuning(get_study(name), controller, case)
+    sought = find_search(get_study(name), controller, case)
     changes = assigned(assignments)
-    tuning = replace(tuning, runs=[merged(config, changes) for config in tuning.runs])
-    check_buildable(name, merged(tuning.runs[0], tuning.changes(tuning.start)))
+    sought = replace(sought, runs=[merged(config, changes) for config in sought.runs])
+    check_buildable(name, merged(sought.runs[0], sought.changes(sought.start)))
     folder = output_folder(out or study_folder(f"{Path(name).stem}-tune-{re.sub(r'[^A-Za-z0-9_-]+', '-', controller)}"))
     made: list[Trial] = []
     about = {"study": name, "controller": controller, "case": case, "seed": seed, "assignments": list(assignments)}
     with locked(folder):
         try:
             with open_pool(jobs, scheduler) as pool, count_bar(complain, f"tune {name} {controller}", trials) as step:
-                for trial in search(name, tuning, trials, seed=seed, pool=pool):
+                for trial in search(name, sought, trials, seed=seed, pool=pool):
                     made.append(trial)
                     step(trial.failed > 0)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(f"the best of {len(made)} of {trials} trials is kept in {folder}") from None
         finally:
             if made:
-                _finish(console, tuning, made, about, folder)
+                _finish(console, sought, made, about, folder)
 
 
-def _finish(console: Console, tuning: Tuning, made: Sequence[Trial], about: Mapping[str, Any], folder: Path) -> None:
+def _finish(
+    console: Console, sought: ParameterSearch, made: Sequence[Trial], about: Mapping[str, Any], folder: Path
+) -> None:
     table = folder / "trials.parquet"
-    _write_trials(table, tuning, made, about)
+    _write_trials(table, sought, made, about)
     best = min(made, key=lambda trial: trial.objective)  # the earliest of equals: the start, if nothing is better
     toml = folder / "tuned.toml"
-    write_text(toml, _toml(tuning, made, best, about))
-    figure = _draw(tuning, made, about, folder / "trials.png")
-    console.print(_start_and_best(tuning, made, best, about))
+    write_text(toml, _toml(sought, made, best, about))
+    figure = _draw(sought, made, about, folder / "trials.png")
+    console.print(_start_and_best(sought, made, best, about))
     for kind, path in (("tuned", toml), ("trials", table), ("figure", figure)):
         console.print(f"{kind:8s} {path}", markup=False, highlight=False, soft_wrap=True)
 
 
-def _write_trials(path: Path, tuning: Tuning, made: Sequence[Trial], about: Mapping[str, Any]) -> None:
+def _write_trials(path: Path, sought: ParameterSearch, made: Sequence[Trial], about: Mapping[str, Any]) -> None:
     import pyarrow as pa
 
     columns: dict[str, Any] = {
@@ -89,19 +91,19 @@ def _write_trials(path: Path, tuning: Tuning, made: Sequence[Trial], about: Mapp
         "failed": pa.array([trial.failed for trial in made], pa.int64()),
         "failure": pa.array([trial.failure for trial in made], pa.string()),
     }
-    columns |= {name: pa.array([trial.values[name] for trial in made], pa.float64()) for name in tuning.parameters}
+    columns |= {name: pa.array([trial.values[name] for trial in made], pa.float64()) for name in sought.parameters}
     write_parquet(path, pa.table(columns), about)
 
 
-def _start_and_best(tuning: Tuning, made: Sequence[Trial], best: Trial, about: Mapping[str, Any]) -> Table:
+def _start_and_best(sought: ParameterSearch, made: Sequence[Trial], best: Trial, about: Mapping[str, Any]) -> Table:
     title = f"{about['study']} · {about['controller']} · pliant {__version__} · best of {len(made)} trials"
     table = Table(title=title, title_justify="left", title_style="bold", header_style="bold")
     table.add_column("parameter", overflow="fold")
     for heading in ("start", "best", "searched"):
         table.add_column(heading, justify="right", no_wrap=True)
-    for name, range_ in tuning.parameters.items():
+    for name, range_ in sought.parameters.items():
         searched = f"{number(range_.low)} … {number(range_.high)}"
-        table.add_row(name, number(tuning.start[name]), number(best.values[name]), searched)
+        table.add_row(name, number(sought.start[name]), number(best.values[name]), searched)
     table.add_section()
     table.add_row("objective", _objective(made[0]), _objective(best), "")
     return table
@@ -111,24 +113,24 @@ def _objective(trial: Trial) -> str:
     return f"{trial.failed} failed" if trial.failed else number(trial.objective)
 
 
-def _draw(tuning: Tuning, made: Sequence[Trial], about: Mapping[str, Any], path: Path) -> Path:
+def _draw(sought: ParameterSearch, made: Sequence[Trial], about: Mapping[str, Any], path: Path) -> Path:
     from pliant.telemetry.plots import save
     from pliant.telemetry.plots import trials as draw
 
     judged = np.array([np.nan if trial.objective >= PENALTY or trial.failed else trial.objective for trial in made])
-    values = {name: np.array([trial.values[name] for trial in made]) for name in tuning.parameters}
-    log = [name for name, range_ in tuning.parameters.items() if range_.log]
+    values = {name: np.array([trial.values[name] for trial in made]) for name in sought.parameters}
+    log = [name for name, range_ in sought.parameters.items() if range_.log]
     return save(draw(judged, values, log, f"Search · {about['study']} · {about['controller']}"), path)
 
 
-def _toml(tuning: Tuning, made: Sequence[Trial], best: Trial, about: Mapping[str, Any]) -> str:
+def _toml(sought: ParameterSearch, made: Sequence[Trial], best: Trial, about: Mapping[str, Any]) -> str:
     lines = [
         f"# pliant {__version__}: best of {len(made)} trials, seed {about['seed']};"
         f" objective {_objective(best)}, at the start {_objective(made[0])}",
         f"study = {json.dumps(about['study'])}",
         *([] if about["case"] is None else [f"case = {json.dumps(about['case'])}"]),
         f"controller = {json.dumps(about['controller'])}",
-        *_assignments(tuning.changes(best.values)),
+        *_assignments(sought.changes(best.values)),
     ]
     return "\n".join(lines) + "\n"
 

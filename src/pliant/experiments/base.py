@@ -12,9 +12,9 @@ from pliant.errors import ConfigError, options
 from pliant.experiments.base_config import CaseConfig as CaseConfig
 from pliant.experiments.base_config import check_windows as check_windows
 from pliant.experiments.case import C, Case, Row, row_runs
+from pliant.experiments.parameter_search import ParameterSearch
 from pliant.experiments.result import Result as Result
 from pliant.experiments.row_keys import refuse_row_keys
-from pliant.experiments.tuning import Tuning
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots.style import save
 from pliant.telemetry.summary import Metric
@@ -110,7 +110,7 @@ class Study(ABC, Generic[C]):
                 made |= figure(case, found)
         return [save(figure, folder / f"{name}.png") for name, figure in made.items()]
 
-    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+    def search(self, controller: str, case: str | None = None) -> ParameterSearch:
         """How the parameters of a controller are searched, on the robot and with the delays of a case (None: of the
         study's choice). Raises ConfigError if the study does not say."""
-        raise ConfigError(f"study {self.name!r} cannot be tuned; a study can if it overrides `Study.tuning`")
+        raise ConfigError(f"study {self.name!r} cannot be tuned; a study can if it overrides `Study.search`")

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from pliant.experiments.base import Experiment, Study
-from pliant.experiments.tuning import Tuning
+from pliant.experiments.parameter_search import ParameterSearch
 from pliant.studies.polishing import draw
 from pliant.studies.polishing.build import build
 from pliant.studies.polishing.cases import CASES
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.measure import WORST, measure
-from pliant.studies.polishing.tuning import tuning_of
+from pliant.studies.polishing.search import search_of
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -33,8 +33,8 @@ class Polishing(Study[PolishingConfig]):
     def figures(self, config: PolishingConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, folder)
 
-    def tuning(self, controller: str, case: str | None = None) -> Tuning:
-        return tuning_of(self.case(case or "tables-2-3-4"), controller)
+    def search(self, controller: str, case: str | None = None) -> ParameterSearch:
+        return search_of(self.case(case or "tables-2-3-4"), controller)
 
 
 STUDY = Polishing()

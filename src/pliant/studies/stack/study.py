@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pliant.experiments.base import Experiment, Result, Study
-from pliant.experiments.tuning import Tuning
+from pliant.experiments.parameter_search import ParameterSearch
 from pliant.studies.stack import draw
 from pliant.studies.stack.build import build
 from pliant.studies.stack.cases import CASES
 from pliant.studies.stack.config import StackCaseConfig
 from pliant.studies.stack.measure import measure
-from pliant.studies.stack.tuning import tuning_of
+from pliant.studies.stack.search import search_of
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -33,8 +33,8 @@ class StackStudy(Study[StackCaseConfig]):
     def figures(self, config: StackCaseConfig, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
         return draw.run_figures(config, experiment, log, folder)
 
-    def tuning(self, controller: str, case: str | None = None) -> Tuning:
-        return tuning_of(self.case(case or "figure8-gazebo"), controller)
+    def search(self, controller: str, case: str | None = None) -> ParameterSearch:
+        return search_of(self.case(case or "figure8-gazebo"), controller)
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         return [*draw.summary_figures(results, folder), *super().summary_figures(results, folder)]

@@ -12,8 +12,8 @@ from pliant.studies.task.check import CHECKED_DRAWS, checked_list
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.draw_list import list_figures
 from pliant.studies.task.measure_list import check_accept_of_list, measured_list
+from pliant.studies.task.search import Searched
 from pliant.studies.task.task_study import TaskStudy
-from pliant.studies.task.tuning import Searched
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 

@@ -12,8 +12,8 @@ from pliant.studies.task.build import build, planned
 from pliant.studies.task.check import CHECKED_DRAWS, checked_path
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.measure import WORST, TaskSignals, check_accept, measured, signals_of
+from pliant.studies.task.search import Searched
 from pliant.studies.task.task_study import TaskStudy
-from pliant.studies.task.tuning import Searched
 from pliant.studies.task.world import true_surface
 from pliant.tasks.parts import Pose
 from pliant.telemetry.log import Log

@@ -12,11 +12,11 @@ from pliant.dotted import nested
 from pliant.errors import ConfigError
 from pliant.experiments.base import Study
 from pliant.experiments.case import Case, Row, seeded
-from pliant.experiments.tuning import Tuning
+from pliant.experiments.parameter_search import ParameterSearch
 from pliant.references.reach.check import ReachCheck
 from pliant.studies.task.check import CHECKED_DRAWS
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.tuning import Searched, tuning_of
+from pliant.studies.task.search import Searched, search_of
 
 _SEEDS = 3
 
@@ -53,9 +53,9 @@ class TaskStudy(Study[TaskCase]):
     def shows(self, config: TaskCase) -> bool:
         return config.seed == 0
 
-    def tuning(self, controller: str, case: str | None = None) -> Tuning:
+    def search(self, controller: str, case: str | None = None) -> ParameterSearch:
         config = merged(self.case(case or next(iter(self.cases))), {"controller": controller})
-        return tuning_of(config, self.searched(config))
+        return search_of(config, self.searched(config))
 
     @abstractmethod
     def searched(self, config: TaskCase) -> Searched:

@@ -12,16 +12,16 @@ import pytest
 from pliant.cli import tune
 from pliant.dotted import nested
 from pliant.errors import ConfigError
+from pliant.experiments.parameter_search import PENALTY, ParameterSearch, Range
 from pliant.experiments.registry import get_study
-from pliant.experiments.search import Trial, find_tuning, search
-from pliant.experiments.tuning import PENALTY, Range, Tuning
+from pliant.experiments.search import Trial, find_search, search
 from tests.studies import toy
 from tests.studies.commands import study
 
 
 def test_the_search_finds_the_minimum_and_begins_at_the_start() -> None:
     assert get_study("toy") is toy.STUDY
-    made = list(search("toy", toy.STUDY.tuning("idle"), 64, seed=1))
+    made = list(search("toy", toy.STUDY.search("idle"), 64, seed=1))
     assert dict(made[0].values) == {"gains.a": 1.0, "gains.b": 5.0}
     best = min(made, key=lambda trial: trial.objective)
     assert made[0].objective == pytest.approx(10.1)
@@ -29,8 +29,8 @@ def test_the_search_finds_the_minimum_and_begins_at_the_start() -> None:
 
 
 def test_failed_runs_and_impossible_values_cost_a_finite_penalty() -> None:
-    tuning = toy.STUDY.tuning("idle")
-    failing = Tuning(tuning.parameters, [toy.STUDY.case("physics")], tuning.objective, tuning.start)
+    sought = toy.STUDY.search("idle")
+    failing = ParameterSearch(sought.parameters, [toy.STUDY.case("physics")], sought.objective, sought.start)
     (trial,) = search("toy", failing, 1)
     assert (trial.objective, trial.failed) == (PENALTY, 1)
     assert trial.failure is not None
@@ -40,9 +40,9 @@ def test_mistakes_in_a_tuning_are_sentences() -> None:
     with pytest.raises(ConfigError, match="low above 0"):
         Range(0.0, 1.0, log=True)
     with pytest.raises(ConfigError, match=r"no controller 'idel'.*did you mean 'idle'"):
-        find_tuning(toy.STUDY, "idel")
+        find_search(toy.STUDY, "idel")
     with pytest.raises(ConfigError, match="cannot be tuned"):
-        find_tuning(toy.STUDY, "other")
+        find_search(toy.STUDY, "other")
     assert nested({"a.b": 1.0, "a.c": 2.0}) == {"a": {"b": 1.0, "c": 2.0}}
 
 
@@ -67,14 +67,14 @@ def test_the_command_writes_the_same_trials_on_one_process_and_on_two(tmp_path: 
 
 @pytest.mark.parametrize("trials", [1, 10])
 def test_as_many_trials_are_made_as_asked_for(trials: int) -> None:
-    assert len(list(search("toy", toy.STUDY.tuning("idle"), trials, seed=1))) == trials
+    assert len(list(search("toy", toy.STUDY.search("idle"), trials, seed=1))) == trials
 
 
 def test_the_table_of_a_search_has_the_start_beside_the_best() -> None:
-    tuning = toy.STUDY.tuning("idle")
+    sought = toy.STUDY.search("idle")
     values = ({"gains.a": 1.0, "gains.b": 5.0}, {"gains.a": 0.1, "gains.b": 2.0}, {"gains.a": 9.0, "gains.b": 9.0})
     made = [Trial(i, values[i], objective, 0) for i, objective in enumerate((10.1, 0.1, 55.0))]
-    table = tune._start_and_best(tuning, made, made[1], {"study": "toy", "controller": "idle"})
+    table = tune._start_and_best(sought, made, made[1], {"study": "toy", "controller": "idle"})
     columns = [list(column.cells) for column in table.columns]
     assert columns[0] == ["gains.a", "gains.b", "objective"]
     assert columns[1] == ["1.00", "5.00", "10.1"]
@@ -82,13 +82,13 @@ def test_the_table_of_a_search_has_the_start_beside_the_best() -> None:
 
 
 def test_what_only_got_the_penalty_is_drawn_as_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    tuning = toy.STUDY.tuning("idle")
+    sought = toy.STUDY.search("idle")
     seen: list[np.ndarray] = []
     monkeypatch.setattr("pliant.telemetry.plots.trials", lambda judged, *_: seen.append(judged))
     monkeypatch.setattr("pliant.telemetry.plots.save", lambda figure, path: path)
-    start = dict(tuning.start)
+    start = dict(sought.start)
     made = [Trial(0, start, 2.0, 0), Trial(1, start, PENALTY, 0), Trial(2, start, 3.0, 1)]
-    tune._draw(tuning, made, {"study": "toy", "controller": "idle"}, tmp_path / "x.png")
+    tune._draw(sought, made, {"study": "toy", "controller": "idle"}, tmp_path / "x.png")
     np.testing.assert_array_equal(seen[0], [2.0, np.nan, np.nan])
 
 

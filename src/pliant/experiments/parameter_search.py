@@ -37,7 +37,7 @@ class Range:
 
 
 @dataclass(frozen=True)
-class Tuning:
+class ParameterSearch:
     """A search. The runs should not be those of the study's table: what was tuned on is no test.
 
     Raises:
@@ -57,9 +57,9 @@ class Tuning:
 
     def __post_init__(self) -> None:
         if not self.parameters or not self.runs:
-            raise ConfigError("a tuning needs at least one parameter and one run")
+            raise ConfigError("a search needs at least one parameter and one run")
         if set(self.start) != set(self.parameters):
-            raise ConfigError(f"a tuning's start needs one value per parameter: {options(self.parameters)}")
+            raise ConfigError(f"the start of a search needs one value per parameter: {options(self.parameters)}")
         for name, range_ in self.parameters.items():
             if not range_.low <= self.start[name] <= range_.high:
                 raise ConfigError(

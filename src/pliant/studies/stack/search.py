@@ -12,7 +12,7 @@ from pliant.configuration import merged
 from pliant.dotted import nested
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import Result
-from pliant.experiments.tuning import Range, Tuning
+from pliant.experiments.parameter_search import ParameterSearch, Range
 from pliant.studies.stack.config import PRESETS, StackCaseConfig
 
 _DURATION = 7.0  # s: one round of the figure-8 after the ramp
@@ -53,7 +53,7 @@ _SEARCHES: Mapping[str, _Search] = {
 }
 
 
-def tuning_of(case: StackCaseConfig, controller: str) -> Tuning:
+def search_of(case: StackCaseConfig, controller: str) -> ParameterSearch:
     """The search over a controller's parameters on the plant of a case.
 
     Raises:
@@ -72,7 +72,7 @@ def tuning_of(case: StackCaseConfig, controller: str) -> Tuning:
         **search.first,
     }
     start = {name: float(begin[name]) for name in search.parameters}
-    return Tuning(search.parameters, [config], _objective, start, _changes)
+    return ParameterSearch(search.parameters, [config], _objective, start, _changes)
 
 
 def _objective(results: Sequence[Result]) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from pliant.configuration import merged
 from pliant.errors import ConfigError
 from pliant.experiments.base import Result
-from pliant.experiments.tuning import Range, Tuning
+from pliant.experiments.parameter_search import ParameterSearch, Range
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.rows import BEST
@@ -30,14 +30,14 @@ _TERMINAL = 5.0
 """weight of the force at the last node over that of the others, as in the paper"""
 
 
-def tuning_of(case: PolishingConfig, controller: str) -> Tuning:
+def search_of(case: PolishingConfig, controller: str) -> ParameterSearch:
     """The search over a controller's weights; force weights only where they change anything (force feedback)."""
     config = merged(case, {"controller": controller})
     now = config.parameters().model_dump()
     if "costs" not in now:
         raise ConfigError(f"controller {controller!r} has no weights that this study knows how to search")
     parameters = {**_COMMON, **(_FORCE if now["kind"] == "force_feedback" else {})}
-    return Tuning(parameters, _runs(config), _objective, _start(config, parameters), _changes)
+    return ParameterSearch(parameters, _runs(config), _objective, _start(config, parameters), _changes)
 
 
 def _runs(config: PolishingConfig) -> Sequence[PolishingConfig]:

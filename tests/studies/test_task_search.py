@@ -11,9 +11,9 @@ from typer.testing import CliRunner
 from pliant.cli.app import app
 from pliant.errors import ConfigError
 from pliant.experiments.base import Result
-from pliant.experiments.search import find_tuning
+from pliant.experiments.search import find_search
+from pliant.studies.task.search import FIRST_SEED, objective
 from pliant.studies.task.study import study_of
-from pliant.studies.task.tuning import FIRST_SEED, objective
 from pliant.telemetry.summary import Metric
 from pliant.wiring.registry import controllers
 
@@ -44,24 +44,24 @@ def written(folder: Path, more: str = "") -> str:
 @pytest.mark.parametrize("controller", controllers())
 def test_every_controller_has_gains_to_search_on_other_seeds_than_a_tables(controller: str) -> None:
     study = study_of("wipe")
-    tuning = find_tuning(study, controller)
-    assert tuning.parameters
-    assert all(run.controller == controller and run.seed >= FIRST_SEED for run in tuning.runs)
-    for key, about in tuning.parameters.items():
-        assert about.low < tuning.start[key] < about.high
+    sought = find_search(study, controller)
+    assert sought.parameters
+    assert all(run.controller == controller and run.seed >= FIRST_SEED for run in sought.runs)
+    for key, about in sought.parameters.items():
+        assert about.low < sought.start[key] < about.high
         assert "phases.reach" not in key  # of another task
 
 
 def test_a_file_names_what_is_searched(tmp_path: Path) -> None:
     study = study_of(written(tmp_path, '[tune]\n"exploration.gain" = [5.0, 500.0]\n'))
-    tuning = find_tuning(study, "haptic")
-    (key,) = tuning.parameters
-    assert (key, tuning.parameters[key].log) == ("exploration.gain", True)
-    assert tuning.changes({key: 7.0}) == {"control": {"haptic": {"exploration": {"gain": 7.0}}}}
+    sought = find_search(study, "haptic")
+    (key,) = sought.parameters
+    assert (key, sought.parameters[key].log) == ("exploration.gain", True)
+    assert sought.changes({key: 7.0}) == {"control": {"haptic": {"exploration": {"gain": 7.0}}}}
     with pytest.raises(ConfigError, match=r"tune: controller 'offset-free-mpc' has no number 'exploration\.gain'"):
-        find_tuning(study, "offset-free-mpc")
+        find_search(study, "offset-free-mpc")
     with pytest.raises(ConfigError, match="nobody"):
-        find_tuning(study, "nobody")
+        find_search(study, "nobody")
 
 
 def test_what_is_worse_costs_more() -> None:

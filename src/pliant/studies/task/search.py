@@ -14,7 +14,7 @@ from pliant.dotted import nested
 from pliant.entries import Believed
 from pliant.errors import ConfigError, options
 from pliant.experiments.base import Result
-from pliant.experiments.tuning import Range, Tuning
+from pliant.experiments.parameter_search import ParameterSearch, Range
 from pliant.robot import Robot
 from pliant.studies.task.config import TaskCase
 
@@ -43,7 +43,7 @@ class Searched:
     believed: Believed
 
 
-def tuning_of(case: TaskCase, searched: Searched) -> Tuning:
+def search_of(case: TaskCase, searched: Searched) -> ParameterSearch:
     """The search over the parameters of a task's controller: those of `[tune]`, or its gains. A row of numbers, such as
     one per axis, is searched by its largest entry; the others keep their ratio to it.
 
@@ -65,7 +65,7 @@ def tuning_of(case: TaskCase, searched: Searched) -> Tuning:
     def applied(sampled: Mapping[str, float]) -> Mapping[str, Any]:
         return {"control": {controller: nested({key: _as_large(values[key], x) for key, x in sampled.items()})}}
 
-    return Tuning(found, runs, objective, start, applied)
+    return ParameterSearch(found, runs, objective, start, applied)
 
 
 def objective(results: Sequence[Result]) -> float:
