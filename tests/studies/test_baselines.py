@@ -26,9 +26,9 @@ def test_every_compared_controller_has_a_search_on_the_plant_of_the_case() -> No
             assert (run.case, run.controller) == (case, controller)
             merged(run, tuning.changes(tuning.start))  # possible
     with pytest.raises(ConfigError, match="has no search"):
-        STACK.tuning("stack-paper")
+        STACK.search("stack-paper")
     with pytest.raises(ConfigError, match="no case"):
-        STACK.tuning("stack", "figure9")
+        STACK.search("stack", "figure9")
 
 
 def test_a_search_of_polishing_has_the_delay_of_its_case() -> None:
