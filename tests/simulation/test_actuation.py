@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pliant.simulation.imperfections.actuation import Actuation, ActuationConfig
+from pliant.simulation.imperfections.actuation import ActuationConfig
+from pliant.simulation.imperfections.config import Imperfections
+from pliant.simulation.imperfections.flaws import drawn_once
+from tests.simulation.scripted import moving, readings
 
 DT = 1e-3  # s
 N = 3
@@ -15,12 +18,15 @@ STILL = np.zeros(N)
 
 def run(config: ActuationConfig, motor: np.ndarray, v: np.ndarray = STILL, steps: int = 1, seed: int = 0) -> np.ndarray:
     """Torques (steps, N) under a constant motor torque."""
-    link = Actuation(config, DT, N)
-    state = link.init(np.zeros(N), seed)
-    out = np.zeros((steps, N))
-    for k in range(steps):
-        out[k], state = link.step(motor, v, state)
-    return out
+    plant = moving(N, v)
+    readings(Imperfections(actuation=config), plant, [motor] * steps, seed)
+    return np.array(plant.received)
+
+
+def drawn(config: ActuationConfig, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gain and bias (N,) of a run."""
+    found = drawn_once(Imperfections(actuation=config), N, seed)
+    return found["gain"], found["bias"]
 
 
 def test_perfect_by_default() -> None:
@@ -36,15 +42,11 @@ def test_first_order_step_response_is_the_analytic_one_at_every_sample(bandwidth
 
 
 def test_the_corner_frequency_attenuates_by_3_db() -> None:
-    bandwidth, dt = 20.0, 1e-4
-    link = Actuation(ActuationConfig(bandwidth=bandwidth), dt, 1)
-    state = link.init(np.zeros(1), 0)
-    t = dt * np.arange(20000)
-    out = np.zeros_like(t)
-    for k, u in enumerate(np.sin(2.0 * np.pi * bandwidth * t)):
-        torque, state = link.step(np.array([u]), np.zeros(1), state)
-        out[k] = torque[0]
-    assert np.abs(out[10000:]).max() == pytest.approx(np.sqrt(0.5), rel=0.01)
+    bandwidth, plant = 20.0, moving(1, np.zeros(1))
+    t = DT * np.arange(4000)
+    config = Imperfections(actuation=ActuationConfig(bandwidth=bandwidth))
+    readings(config, plant, [np.array([u]) for u in np.sin(2.0 * np.pi * bandwidth * t)])
+    assert np.abs(np.array(plant.received)[2000:]).max() == pytest.approx(np.sqrt(0.5), rel=0.06)
 
 
 def test_friction_follows_its_formula_and_opposes_motion() -> None:
@@ -57,8 +59,7 @@ def test_friction_follows_its_formula_and_opposes_motion() -> None:
 
 def test_gain_and_bias_are_drawn_once_per_run_uniformly_within_their_ranges() -> None:
     config = ActuationConfig(gain=(0.8, 1.2), bias=(-2.0, 2.0))
-    drawn = [Actuation(config, DT, N).init(np.zeros(N), seed) for seed in range(400)]
-    gains, biases = np.concatenate([s.gain for s in drawn]), np.concatenate([s.bias for s in drawn])
+    gains, biases = (np.concatenate(values) for values in zip(*(drawn(config, s) for s in range(400)), strict=True))
     for values, low, high in ((gains, 0.8, 1.2), (biases, -2.0, 2.0)):
         assert values.min() >= low
         assert values.max() <= high
@@ -67,16 +68,16 @@ def test_gain_and_bias_are_drawn_once_per_run_uniformly_within_their_ranges() ->
         assert values.std() == pytest.approx(spread, rel=0.06)
     torque = run(config, np.full(N, 10.0), steps=3, seed=7)
     assert np.array_equal(torque[0], torque[2])  # a bias, not a noise
-    state = Actuation(config, DT, N).init(np.zeros(N), 7)
-    assert np.allclose(torque[0], state.gain * 10.0 + state.bias)
+    gain, bias = drawn(config, 7)
+    assert np.allclose(torque[0], gain * 10.0 + bias)
 
 
 def test_the_peak_torque_clamps_before_the_gears_and_what_it_takes_is_visible() -> None:
     config = ActuationConfig(peak_torque=40.0, gain=(1.1, 1.1))
-    link = Actuation(config, DT, N)
-    torque, state = link.step(np.array([60.0, -45.0, 10.0]), STILL, link.init(np.zeros(N), 0))
-    assert np.allclose(torque, 1.1 * np.array([40.0, -40.0, 10.0]))
-    assert np.allclose(state.clamped, [20.0, -5.0, 0.0])
+    plant = moving(N, STILL)
+    reading = readings(Imperfections(actuation=config), plant, [np.array([60.0, -45.0, 10.0])])[-1]
+    assert np.allclose(plant.received[0], 1.1 * np.array([40.0, -40.0, 10.0]))
+    assert np.allclose(reading.torque_sent, [40.0, -40.0, 10.0])
 
 
 def test_torque_noise_has_its_standard_deviation() -> None:
@@ -86,13 +87,13 @@ def test_torque_noise_has_its_standard_deviation() -> None:
 
 def test_switching_one_draw_off_leaves_the_others_unchanged() -> None:
     full = ActuationConfig(gain=(0.8, 1.2), bias=(-2.0, 2.0), noise=0.1)
-    states = [
-        Actuation(config, DT, N).init(np.zeros(N), 11)
+    (gain, bias), (_, same_bias), (same_gain, _) = (
+        drawn(config, 11)
         for config in (full, full.model_copy(update={"gain": (1.0, 1.0)}), full.model_copy(update={"noise": 0.0}))
-    ]
-    assert np.array_equal(states[0].bias, states[1].bias)
-    assert np.array_equal(states[0].gain, states[2].gain)
-    assert not np.array_equal(states[0].gain, states[1].gain)
+    )
+    assert np.array_equal(bias, same_bias)
+    assert np.array_equal(gain, same_gain)
+    assert not np.array_equal(gain, np.ones(N))
 
 
 def test_bad_values_are_refused() -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pliant.simulation.imperfections.ripple import Ripple, RippleConfig
+from pliant.simulation.imperfections.config import Imperfections
+from pliant.simulation.imperfections.ripple import RippleConfig
+from tests.simulation.scripted import moving, readings
 
 DT = 1e-3  # s
 CONFIG = RippleConfig(amplitude=2.0, frequency=35.0, speed=0.35, force=50.0)
@@ -14,13 +16,9 @@ WRENCH = np.array([0.0, 0.0, 50.0, 0.1, 0.0, 0.0])
 
 def ripple(speed: float, wrench: np.ndarray = WRENCH, config: RippleConfig = CONFIG, steps: int = 4000) -> np.ndarray:
     """What is added to the normal force, (steps,) N."""
-    link = Ripple(config, DT)
-    phase = link.init()
-    out = np.zeros(steps)
-    for k in range(steps):
-        reading, phase = link.step({"tool": wrench}, np.array([speed, 0.0]), phase)
-        out[k] = reading["tool"][2] - wrench[2]
-    return out
+    plant = moving(2, np.array([speed, 0.0]), wrench)
+    log = readings(Imperfections(ripple=config), plant, [np.zeros(2)] * steps)
+    return np.array([reading.wrenches["tool"][2] - wrench[2] for reading in log[1:]])
 
 
 def peak_frequency(signal: np.ndarray) -> float:

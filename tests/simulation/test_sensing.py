@@ -10,7 +10,9 @@ from pliant.errors import ConfigError, ShapeError
 from pliant.signals import Measurement
 from pliant.simulation.imperfections.config import Imperfections
 from pliant.simulation.imperfections.link_config import per_joint
-from pliant.simulation.imperfections.sensing import Sensing, SensingConfig
+from pliant.simulation.imperfections.sensing import SensingConfig
+from tests.simulation.scripted import Scripted, moving
+from tests.simulation.scripted import readings as readings_of
 
 N = 3
 PERIOD = 1e-3  # s
@@ -22,20 +24,16 @@ def true_measurement(tick: int = 0) -> Measurement:
         time=tick * PERIOD,
         q=np.full(N, float(tick)),
         v=np.full(N, 10.0 + tick),
-        torque=np.full(N, 20.0 + tick),
+        torque=np.full(N, 30.0 + tick),
         torque_sent=np.full(N, 30.0 + tick),
         wrenches={"tool": np.full(6, 40.0 + tick)},
     )
 
 
 def readings(config: SensingConfig, count: int, seed: int = 3) -> list[Measurement]:
-    sensing = Sensing(config, PERIOD, N)
-    state = sensing.init(true_measurement(), seed)
-    out = []
-    for tick in range(count):
-        reading, state = sensing.step(true_measurement(tick), state)
-        out.append(reading)
-    return out
+    plant = Scripted(lambda tick, _: true_measurement(tick), N)
+    sent = [np.full(N, 31.0 + tick) for tick in range(count - 1)]
+    return readings_of(Imperfections(sensing=config), plant, sent, seed)
 
 
 NOISY = SensingConfig(noise_q=1e-3, noise_v=2e-3, noise_torque=(0.03, 0.02, 0.01), noise_force=0.01, noise_moment=0.004)
@@ -62,11 +60,8 @@ def test_noise_has_the_stated_standard_deviation_zero_mean_and_no_memory() -> No
 
 
 def test_noise_is_not_added_to_the_true_signal() -> None:
-    sensing = Sensing(NOISY, PERIOD, N)
     true = true_measurement()
-    state = sensing.init(true, 0)
-    for _ in range(10):
-        _, state = sensing.step(true, state)
+    readings_of(Imperfections(sensing=NOISY), Scripted(lambda *_: true, N), [np.zeros(N)] * 10)
     fresh = true_measurement()
     assert np.array_equal(true.q, fresh.q)
     assert np.array_equal(true.torque, fresh.torque)
@@ -130,9 +125,9 @@ def test_bad_values_are_refused_with_the_rule() -> None:
     with pytest.raises(ValidationError):
         SensingConfig(noise_q=float("nan"))
     with pytest.raises(ConfigError, match="whole multiple"):
-        Sensing(SensingConfig(delay=1.5e-3), PERIOD, N)
+        readings(SensingConfig(delay=1.5e-3), 1)
     with pytest.raises(ShapeError, match="noise_q must have 3 entries"):
-        Sensing(SensingConfig(noise_q=(1.0, 2.0)), PERIOD, N)
+        readings(SensingConfig(noise_q=(1.0, 2.0)), 1)
 
 
 @pytest.mark.parametrize("n", [3, 6, 7, 9])
@@ -140,7 +135,8 @@ def test_the_published_noise_fits_any_number_of_joints(n: int) -> None:
     config = Imperfections.p3().sensing
     noise = per_joint(config.noise_torque, n, "noise_torque", fitted=config.fit_joints)
     np.testing.assert_array_equal(noise, [0.03, 0.03, 0.02, 0.02, 0.01, 0.01, 0.01, 0.01, 0.01][:n])
-    Sensing(config, 1e-3, n)
+    readings_of(Imperfections(sensing=config), moving(n, np.zeros(n)), [])
     if n != 6:
+        fixed = config.model_copy(update={"fit_joints": False})
         with pytest.raises(ShapeError, match="noise_torque"):
-            Sensing(config.model_copy(update={"fit_joints": False}), 1e-3, n)
+            readings_of(Imperfections(sensing=fixed), moving(n, np.zeros(n)), [])

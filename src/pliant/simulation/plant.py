@@ -12,9 +12,9 @@ from pliant.errors import RunFailedError
 from pliant.interfaces import Compensation, Plant
 from pliant.robot import Robot
 from pliant.signals import Command, Measurement, Truth
+from pliant.simulation.compiled_period import CompiledPeriod
 from pliant.simulation.compiled_world import WorldParts
-from pliant.simulation.contact.explicit import ExplicitContacts, explicit_contacts
-from pliant.simulation.contact.mujoco_forces import contact_wrenches
+from pliant.simulation.contact.explicit import explicit_contacts
 from pliant.simulation.contact.pairs import can_move, pairs_of
 from pliant.simulation.disturbances import Push
 from pliant.simulation.equilibrium import holding_torque
@@ -22,8 +22,11 @@ from pliant.simulation.force_sensor import ForceSensor, sensor_readings
 from pliant.simulation.joint_effects import JointEffects
 from pliant.simulation.joint_stops import JointStops, limits_of
 from pliant.simulation.link_capsule import LinkCapsule
+from pliant.simulation.mujoco_library import can_look_inside
+from pliant.simulation.python_period import PythonPeriod
 from pliant.simulation.scene import Scene
-from pliant.simulation.stepping import shares, substeps
+from pliant.simulation.stepping import substeps
+from pliant.simulation.what_touches import WhatTouches
 from pliant.simulation.world import World
 from pliant.spatial import Array, clamp
 
@@ -93,18 +96,7 @@ class MujocoPlant(Plant[World]):
         for frame in [*frames, *(link.end for link in self.links)]:
             robot.frame_id(frame)
         parts = WorldParts(robot, self.scene, self.joints, self.stops, self.links)
-        self._parts = parts.touching_geoms
-        pairs = pairs_of(self.scene, self._parts)
-        self.model = parts.compile(physics_step, pairs)
-        self.explicit = (
-            explicit_contacts(self.model, self.start, pairs, self.scene.hollow, self.scene.meshes) if explicit else None
-        )
-        self._sites = {name: self.model.site(name).id for name in dict.fromkeys(frames)}
-        things = [thing.name for thing in self.scene.things if can_move(thing)]
-        self._movable = {name: self.model.body(name).id for name in things}
-        self._contact_frames = {self.model.geom(geom).id: frame for geom, frame in self._parts.items()}
-        self._lower, self._upper = limits_of(self.model, robot)
-        self._felt = {s: [f for f in self._parts.values() if robot.carries(s.frame, f)] for s in self.sensors}
+        self._build(parts, physics_step, list(dict.fromkeys(frames)))
 
     # ------------------------------------------------------------------ Plant
 
@@ -117,8 +109,8 @@ class MujocoPlant(Plant[World]):
         limits reach); it is what the measurement says was sent."""
         data = mujoco.MjData(self.model)
         data.qpos[: self.robot.n] = self.start
-        world = World(data, 0, self._no_wrenches(), frozenset(), np.zeros(self.robot.n))
-        self._refresh(world)
+        world = World(data, 0, self._loop.no_wrenches(), frozenset(), np.zeros(self.robot.n))
+        self._loop.refresh(world)
         world.torque = holding_torque(self.model, data, self.robot.n, self.robot.torque_limit)
         return self._started(world)
 
@@ -126,51 +118,108 @@ class MujocoPlant(Plant[World]):
         """Goes on where a plant of the same robot and the same things stopped, for example one with another table."""
         data = mujoco.MjData(self.model)
         data.qpos[:], data.qvel[:], data.time = world.data.qpos, world.data.qvel, world.data.time
-        again = World(data, world.ticks, self._no_wrenches(), frozenset(), world.torque, pushes=world.pushes)
+        again = World(data, world.ticks, self._loop.no_wrenches(), frozenset(), world.torque, pushes=world.pushes)
         return self._started(again)
 
     def _started(self, world: World) -> tuple[Measurement, World]:
-        self._refresh(world)
+        self._loop.refresh(world)
         if self.explicit is None:
-            self._read_contacts(world)
+            self._loop.read_contacts(world)
         mujoco.mj_step1(self.model, world.data)
         return self._measure(world), world
 
-    def _refresh(self, world: World) -> None:
-        """Forces and accelerations under the held torque, without letting time pass."""
-        data = world.data
-        mujoco.mj_step1(self.model, data)
-        if self.explicit is not None:
-            world.contacts = self.explicit.init(data)
-            self._read_explicit(world, self.explicit)
-        self._apply(world)
-        mujoco.mj_forward(self.model, data)
-
     def step(self, command: Command, world: World) -> tuple[Measurement, World]:
+        if self.compiled is not None:
+            out, touching = self.compiled.step(world, command.torque)
+            time = self.passed(world, 1, out, touching)
+            n, torque = self.robot.n, world.torque
+            return Measurement(time, out[:n], out[n : 2 * n], torque, torque, self.compiled.readings(out)), world
         world.torque = clamp(command.torque, -self._limit, self._limit)
-        if self.explicit is None:
-            self._step_mujoco(world)
-        else:
-            self._step_explicit(world, self.explicit)
+        self._loop.step(world)
         world.ticks += 1
         self._check_speed(world)
         return self._measure(world), world
 
+    def passed(self, world: World, periods: int, out: Array, touching: int) -> float:
+        """Writes compiled periods into the world. Returns its time in s.
+
+        Args:
+            world: consumed.
+            periods: how many there were.
+            out: the outcome of the last of them.
+            touching: what came back from it.
+
+        Raises:
+            RunFailedError: a joint was too fast.
+        """
+        world.ticks += periods
+        if touching < 0:
+            self._check_speed(world)
+        assert self.compiled is not None
+        self.compiled.keep(world, out, touching)
+        return world.ticks * self.period
+
     def truth(self, world: World) -> Truth:
-        n, data = self.robot.n, world.data
+        n, data, sites, bodies = self.robot.n, world.data, self._site_ids, self._body_ids
+        q = data.qpos[:n].copy()
         return Truth(
             time=world.ticks * self.period,
-            q=data.qpos[:n].copy(),
+            q=q,
             v=data.qvel[:n].copy(),
             torque=data.qfrc_applied[:n].copy(),
-            positions={name: data.site_xpos[site].copy() for name, site in self._sites.items()},
-            rotations={name: data.site_xmat[site].reshape(3, 3).copy() for name, site in self._sites.items()},
+            positions=dict(zip(self._sites, data.site_xpos[sites], strict=True)),
+            rotations=dict(zip(self._sites, data.site_xmat[sites].reshape(-1, 3, 3), strict=True)),
             wrenches=dict(world.wrenches),
-            limit_excess=np.maximum(0.0, np.maximum(self._lower - data.qpos[:n], data.qpos[:n] - self._upper)),
-            objects={name: np.concatenate([data.xpos[body], data.xquat[body]]) for name, body in self._movable.items()},
+            limit_excess=np.maximum(0.0, np.maximum(self._lower - q, q - self._upper)),
+            objects=dict(zip(self._movable, np.hstack([data.xpos[bodies], data.xquat[bodies]]), strict=True))
+            if self._movable
+            else {},
         )
 
     # ------------------------------------------------------------------ inside
+
+    def _build(self, parts: WorldParts, physics_step: float, frames: Sequence[str]) -> None:
+        """Model and loops. Args: parts; physics_step, s; frames whose places are told."""
+        robot, scene = self.robot, self.scene
+        pairs = pairs_of(scene, parts.touching_geoms)
+        self.model = parts.compile(physics_step, pairs)
+        self.explicit = (
+            explicit_contacts(self.model, self.start, pairs, scene.hollow, scene.meshes)
+            if scene.contact == "explicit"
+            else None
+        )
+        self._sites = {name: self.model.site(name).id for name in frames}
+        things = [thing.name for thing in scene.things if can_move(thing)]
+        self._movable = {name: self.model.body(name).id for name in things}
+        self._lower, self._upper = limits_of(self.model, robot)
+        felt = {s: [f for f in parts.touching_geoms.values() if robot.carries(s.frame, f)] for s in self.sensors}
+        geoms = {self.model.geom(geom).id: frame for geom, frame in parts.touching_geoms.items()}
+        self._touches = WhatTouches(geoms, self._sites, self.sensors, felt)
+        self._loop = PythonPeriod(
+            self.model,
+            self._touches,
+            parts.touching_geoms,
+            self.explicit,
+            robot.n,
+            self.substeps,
+            self.joints,
+            self.pushes,
+        )
+        self._site_ids, self._body_ids = list(self._sites.values()), list(self._movable.values())
+        self.compiled = self._compile() if self.explicit is None and can_look_inside() else None
+        """its period as one call; None where contacts are explicit or MuJoCo is not the one that pliant was compiled
+        for"""
+
+    def _compile(self) -> CompiledPeriod:
+        return CompiledPeriod(
+            self.model,
+            self._touches,
+            substeps=self.substeps,
+            coriolis=self.joints.compensation == "gravity+coriolis",
+            limit=self._limit,
+            fastest=self._fastest,
+            pushes=self.pushes,
+        )
 
     def _check_speed(self, world: World) -> None:
         speed = np.abs(world.data.qvel[: self.robot.n])
@@ -184,58 +233,6 @@ class MujocoPlant(Plant[World]):
             f" {self.speed_stop:g} times its speed limit"
         )
 
-    def _step_mujoco(self, world: World) -> None:
-        for last in range(self.substeps - 1, -1, -1):
-            self._apply(world)
-            mujoco.mj_step2(self.model, world.data)
-            if last == 0:
-                self._read_contacts(world)
-            mujoco.mj_step1(self.model, world.data)
-
-    def _step_explicit(self, world: World, contacts: ExplicitContacts) -> None:
-        assert world.contacts is not None
-        for steps in shares(self.substeps, 4 if self._follows_state(world) else 1):
-            self._apply(world)
-            contacts.advance(world.contacts, steps)
-            mujoco.mj_step1(self.model, world.data)
-        contacts.refresh(world.contacts)
-        self._read_explicit(world, contacts)
-
-    def _follows_state(self, world: World) -> bool:
-        """Whether something besides the held torque changes within a period."""
-        return bool(self.pushes or world.pushes) or self.joints.compensation == "gravity+coriolis"
-
-    def _read_contacts(self, world: World) -> None:
-        world.wrenches, world.touching = contact_wrenches(self.model, world.data, self._contact_frames, self._sites)
-
-    def _read_explicit(self, world: World, contacts: ExplicitContacts) -> None:
-        assert world.contacts is not None
-        world.wrenches = self._no_wrenches()
-        touching: set[str] = set()
-        for index, pair in enumerate(contacts.pairs):
-            frame = self._parts.get(pair.geom_a)
-            if frame is not None and contacts.touching(world.contacts, index):
-                about = world.data.site_xpos[self._sites[frame]]
-                world.wrenches[frame] += contacts.wrench(world.contacts, index, about)
-                touching.add(frame)
-        world.touching = frozenset(touching)
-
-    def _no_wrenches(self) -> dict[str, Array]:
-        return {frame: np.zeros(6) for frame in self._parts.values()}
-
-    def _apply(self, world: World) -> None:
-        n, data = self.robot.n, world.data
-        data.qfrc_applied[:] = 0.0
-        data.qfrc_applied[:n] = world.torque
-        if self.joints.compensation == "gravity+coriolis":
-            data.qfrc_applied[:n] += data.qfrc_bias[:n]
-        for push in (*self.pushes, *world.pushes):
-            if push.at(data.time):
-                site = self.model.site(push.frame).id
-                body = int(self.model.site_bodyid[site])
-                force = np.array(push.force)
-                mujoco.mj_applyFT(self.model, data, force, np.zeros(3), data.site_xpos[site], body, data.qfrc_applied)
-
     def _measure(self, world: World) -> Measurement:
         n, data = self.robot.n, world.data
         return Measurement(
@@ -244,5 +241,5 @@ class MujocoPlant(Plant[World]):
             v=data.qvel[:n].copy(),
             torque=world.torque.copy(),
             torque_sent=world.torque,
-            wrenches=sensor_readings(self.model, data, self.sensors, self._sites, self._felt, world.wrenches),
+            wrenches=sensor_readings(self.model, data, self.sensors, self._sites, self._touches.felt, world.wrenches),
         )

@@ -6,11 +6,8 @@ friction limit ([HapFIC] sec. III). The law itself and its loop are compiled (cp
 
 from __future__ import annotations
 
-import ctypes
-import functools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -18,6 +15,7 @@ import numpy as np
 from pliant._contact import BRISTLE_SIZE, ContactLoop, SampledMesh
 from pliant.errors import ConfigError, RunFailedError
 from pliant.simulation.contact.material import ContactMaterial, require_stable_step
+from pliant.simulation.mujoco_library import HALF_STEPS, addresses
 from pliant.simulation.surface import Surface
 from pliant.spatial import Array
 
@@ -68,11 +66,11 @@ class ExplicitContacts:
         self.model = model
         self.pairs = tuple(pairs)
         self._geoms = [(model.geom(pair.geom_a).id, model.geom(pair.geom_b).id) for pair in self.pairs]
-        self._slots = self._fill(ContactLoop(model, mujoco.MjData(model), *_half_steps()))
+        self._slots = self._fill(ContactLoop(model, mujoco.MjData(model), *addresses(HALF_STEPS)))
 
     def init(self, data: mujoco.MjData) -> ContactState:
         """Untouched contacts of a world, at the forces of its present configuration."""
-        loop = ContactLoop(self.model, data, *_half_steps())
+        loop = ContactLoop(self.model, data, *addresses(HALF_STEPS))
         self._fill(loop)
         n = loop.slots
         state = ContactState(
@@ -194,17 +192,3 @@ def _inverse_mass(model: mujoco.MjModel, data: mujoco.MjData, geom: int, presses
     M = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, M)
     return float(np.linalg.eigvalsh(J @ np.linalg.solve(M, J.T))[-1])
-
-
-@functools.cache
-def _half_steps() -> tuple[int, int]:
-    """Addresses of mj_step1 and mj_step2 in the library that the mujoco package has loaded."""
-    folder = Path(str(mujoco.__file__)).parent
-    names = sorted([*folder.glob("libmujoco.so*"), *folder.glob("libmujoco*.dylib"), *folder.glob("mujoco.dll")])
-    if not names:
-        raise RunFailedError(f"no MuJoCo library in {folder}; reinstall the mujoco package")
-    library = ctypes.CDLL(str(names[0]))
-    first, second = (ctypes.cast(getattr(library, name), ctypes.c_void_p).value for name in ("mj_step1", "mj_step2"))
-    assert first is not None
-    assert second is not None
-    return first, second

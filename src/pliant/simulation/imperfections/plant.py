@@ -14,17 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError
-from pliant.frozen import changed
 from pliant.interfaces import Compensation, Plant
 from pliant.sampling import whole_periods
 from pliant.signals import Command, Measurement, Truth
-from pliant.simulation.imperfections.actuation import Actuation, ActuationState
+from pliant.simulation.compiled_period import compiled_period_of
 from pliant.simulation.imperfections.config import Imperfections
-from pliant.simulation.imperfections.delay import Delay
-from pliant.simulation.imperfections.ripple import Ripple
-from pliant.simulation.imperfections.sensing import Sensing, SensingState
-from pliant.simulation.imperfections.torque_loop import TorqueLoop, TorqueLoopState
-from pliant.spatial import Array, as_vector, clamp
+from pliant.simulation.imperfections.draws import Draws
+from pliant.simulation.imperfections.flaws import Sizes, drawn_once, draws_of, flaws_of, wrench_sources
+from pliant.simulation.plant import MujocoPlant
+from pliant.spatial import Array, as_vector
 
 
 @dataclass(slots=True)
@@ -33,19 +31,12 @@ class ImperfectWorld:
 
     inner: Any
     """state of the plant inside"""
-    commands: tuple[Array, ...]
-    """torques (n,) computed but not yet in effect, the oldest first, one per period of the torque loop, N·m"""
-    torque_loop: TorqueLoopState
-    actuation: ActuationState
-    ripple_phase: float
-    """rad"""
-    sensing: SensingState
-    reading: Measurement
-    """what the sensors said last"""
-    true_velocity: Array
-    """(n,) rad/s"""
-    motor_torque: Array
-    """(n,) what the drives asked of the motors last, N·m"""
+    memory: Array
+    """what the chain remembers, one row of numbers (cpp/plant/flaws.cpp)"""
+    draws: Draws
+    """where its random numbers come from"""
+    time: float
+    """s, of the last reading"""
 
 
 class ImperfectPlant(Plant[ImperfectWorld]):
@@ -86,8 +77,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         if self._ticks < 1 or self._inner_steps < 1:
             raise ConfigError("the control period and the torque loop's must be above zero")
         self._holding_torque = holding_torque
-        self._delay: Delay[Array] = Delay(whole_periods(config.computation_delay, tick, "computation delay"))
-        self._ripple = Ripple(config.ripple, tick)
+        whole_periods(config.computation_delay, tick, "computation delay")
         _check_damping(inner, config.joint_damping)
 
     @property
@@ -102,23 +92,17 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         """The first measurement, and the robot as it stands, holding itself with `holding_torque`."""
         true, inner = self.inner.init()
         n = true.q.shape[0]
-        self._build(n)
+        self._build(n, tuple(true.wrenches))
         held = true.torque_sent if self._holding_torque is None else self._holding_torque
         held = as_vector(held, n, "holding_torque")
-        true = changed(true, torque=held, torque_sent=held)
-        reading, sensing = self._sensing.step(true, self._sensing.init(true, self.seed))
-        world = ImperfectWorld(
-            inner=inner,
-            commands=self._delay.init(held),
-            torque_loop=self._torque_loop.init(reading.torque),
-            actuation=self._actuation.init(held, self.seed),
-            ripple_phase=self._ripple.init(),
-            sensing=sensing,
-            reading=reading,
-            true_velocity=true.v,
-            motor_torque=held,
-        )
-        return reading, world
+        memory, out = np.empty(self._flaws.memory_size), np.empty(self._flaws.reading_size)
+        draws = draws_of(self.config, self._sizes, self.seed)
+        sources = ("sensing.q", "sensing.v", "sensing.torque", *wrench_sources(self._sizes.sensors))
+        drawn = drawn_once(self.config, n, self.seed)
+        now = self._row(true)
+        now[2 * n : 3 * n] = held
+        self._flaws.init(memory, held, **drawn, now=now, draw=draws.single(sources), out=out)
+        return self._reading(true.time, out), ImperfectWorld(inner, memory, draws, true.time)
 
     def step(self, command: Command, world: ImperfectWorld) -> tuple[Measurement, ImperfectWorld]:
         """One control period.
@@ -126,42 +110,62 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         `Measurement.torque_sent` is the torque asked of the drives, after the clamp: its mean over the period, since a
         command can take effect in the middle of one.
         """
-        sent = np.zeros_like(command.torque)
-        for _ in range(self._ticks):
-            asked, world.commands = self._delay.step(command.torque, world.commands)
-            asked = clamp(asked, -self._actuation.limit, self._actuation.limit)
-            sent += asked / self._ticks
-            true = self._drive(asked, world)
-            self._sense(changed(true, torque_sent=asked), world)
-        return changed(world.reading, torque_sent=sent), world
+        draws = world.draws.take(self._ticks)
+        if self._period is None or not isinstance(self.inner, MujocoPlant):
+            reading = self._in_python(command, draws, world)
+        else:
+            split = self._flaws.reading_size
+            reading = np.empty(split + self._period.size)
+            robot, core, torque = world.inner, self._period.core, command.torque
+            pushes = self._period.rows(robot.pushes)
+            mask = self._flaws.period(world.memory, draws, core, robot.data, torque, pushes, reading)
+            world.time = self.inner.passed(robot, self._ticks * self._inner_steps, reading[split:], mask)
+        return self._reading(world.time, reading), world
 
     def truth(self, world: ImperfectWorld) -> Truth | None:
         return self.inner.truth(world.inner)
 
     # ------------------------------------------------------------------ inside
 
-    def _build(self, n: int) -> None:
-        """Links whose sizes depend on the number of joints, which the plant tells by its first measurement."""
-        self._actuation = Actuation(self.config.actuation, self.inner.period, n)
-        self._torque_loop = TorqueLoop(self.config.torque_loop, self._actuation.limit)
-        self._sensing = Sensing(self.config.sensing, self.config.torque_loop.period, n)
+    def _build(self, n: int, sensors: tuple[str, ...]) -> None:
+        """What depends on the number of joints and sensors, which the plant tells by its first measurement."""
+        self._sizes = Sizes(n, sensors, self._ticks, self._inner_steps, self.inner.period)
+        self._flaws = flaws_of(self.config, self._sizes)
+        self._period = compiled_period_of(self.inner)
 
-    def _drive(self, asked: Array, world: ImperfectWorld) -> Measurement:
-        """Drives and gears for one period of the torque loop. Returns what perfect sensors say at its end."""
-        world.motor_torque, world.torque_loop = self._torque_loop.step(asked, world.reading.torque, world.torque_loop)
-        for _ in range(self._inner_steps - 1):
-            self._gears(world)
-        return self._gears(world)
+    def _in_python(self, command: Command, draws: Array, world: ImperfectWorld) -> Array:
+        """A period round a plant that is not compiled. Returns a reading in a row."""
+        n, flaws, memory = self._sizes.n, self._flaws, world.memory
+        out, asked, sent = np.empty(flaws.reading_size), np.empty(n), np.zeros(n)
+        wanted = np.ascontiguousarray(command.torque, dtype=np.float64)
+        for draw in draws:
+            flaws.drive(memory, wanted, asked)
+            sent += asked / self._ticks
+            for step in range(self._inner_steps - 1):
+                self._geared(draw, step, world)
+            true = self._geared(draw, self._inner_steps - 1, world)
+            flaws.sense(memory, draw, self._row(true), out)
+            world.time = true.time
+        out[3 * n : 4 * n] = sent
+        return out
 
-    def _gears(self, world: ImperfectWorld) -> Measurement:
-        torque, world.actuation = self._actuation.step(world.motor_torque, world.true_velocity, world.actuation)
-        true, world.inner = self.inner.step(Command(world.reading.time, torque, np.zeros_like(torque)), world.inner)
-        world.true_velocity = true.v
+    def _geared(self, draw: Array, step: int, world: ImperfectWorld) -> Measurement:
+        """A step of the plant inside. Returns what perfect sensors say at its end."""
+        torque = np.empty(self._sizes.n)
+        self._flaws.gear(world.memory, draw, step, torque)
+        true, world.inner = self.inner.step(Command(world.time, torque, np.zeros_like(torque)), world.inner)
+        self._flaws.moved(world.memory, np.ascontiguousarray(true.v))
         return true
 
-    def _sense(self, true: Measurement, world: ImperfectWorld) -> None:
-        wrenches, world.ripple_phase = self._ripple.step(true.wrenches, true.v, world.ripple_phase)
-        world.reading, world.sensing = self._sensing.step(changed(true, wrenches=wrenches), world.sensing)
+    def _row(self, true: Measurement) -> Array:
+        """What perfect sensors say, as the chain takes it."""
+        felt = [true.wrenches[frame] for frame in self._sizes.sensors]
+        return np.concatenate([true.q, true.v, true.torque, *felt])
+
+    def _reading(self, time: float, out: Array) -> Measurement:
+        n, sensors = self._sizes.n, self._sizes.sensors
+        wrenches = dict(zip(sensors, out[4 * n : 4 * n + 6 * len(sensors)].reshape(-1, 6), strict=True))
+        return Measurement(time, out[:n], out[n : 2 * n], out[2 * n : 3 * n], out[3 * n : 4 * n], wrenches)
 
 
 def _check_damping(inner: Plant[Any], wanted: float) -> None:

@@ -1,0 +1,113 @@
+"""A control period of a simulated robot as one compiled call (cpp/plant/physics.cpp)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from pliant._plant import Physics
+from pliant.simulation.disturbances import Push
+from pliant.simulation.mujoco_library import FUNCTIONS, addresses
+from pliant.simulation.what_touches import WhatTouches
+from pliant.simulation.world import World
+from pliant.spatial import Array, symmetric
+
+PushRow = tuple[int, tuple[float, float, float], float, float]
+"""site, force N, from, to s"""
+
+
+class CompiledPeriod:
+    """The handle of `_plant.Physics` for one model.
+
+    Args:
+        model: compiled.
+        touches: what can touch, and the sensors.
+        substeps: physics steps in a period.
+        coriolis: whether the robot compensates its bias forces at every step.
+        limit: (n,) N·m.
+        fastest: (n,) rad/s; infinite: no bound.
+        pushes: disturbances.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        touches: WhatTouches,
+        *,
+        substeps: int,
+        coriolis: bool,
+        limit: Array,
+        fastest: Array,
+        pushes: Sequence[Push],
+    ) -> None:
+        self._model = model
+        self.contacts = tuple(dict.fromkeys(touches.frames.values()))
+        """frames that can touch"""
+        self.sensors = tuple(sensor.frame for sensor in touches.sensors)
+        """frames of the sensors"""
+        of_geom = [self.contacts.index(touches.frames[g]) if g in touches.frames else -1 for g in range(model.ngeom)]
+        rows = [
+            (
+                touches.sites[sensor.frame],
+                sensor.mass,
+                sensor.center,
+                symmetric(sensor.inertia).ravel().tolist(),
+                [self.contacts.index(frame) for frame in touches.felt[sensor]],
+            )
+            for sensor in touches.sensors
+        ]
+        self.core = Physics(
+            model,
+            addresses(FUNCTIONS),
+            substeps,
+            coriolis,
+            limit.tolist(),
+            fastest.tolist(),
+            of_geom,
+            [touches.sites[frame] for frame in self.contacts],
+            rows,
+            self.rows(pushes),
+        )
+        self.n = len(limit)
+        self.size = self.core.outcome_size
+        """numbers of a period's outcome"""
+        self._felt = 3 * self.n + 6 * len(self.contacts)
+        self._touching: dict[int, frozenset[str]] = {}
+
+    def step(self, world: World, torque: Array) -> tuple[Array, int]:
+        """Holds a torque (n,) for a period. Returns what came of it (`size`,), for `keep`, and a bit for each frame
+        that touches; -1: a joint is too fast."""
+        out = np.empty(self.size)
+        return out, self.core.step(world.data, torque, self.rows(world.pushes), out)
+
+    def keep(self, world: World, out: Array, mask: int) -> None:
+        """Writes a period's outcome (`size`,) and what touches into the world."""
+        n = self.n
+        world.torque = out[2 * n : 3 * n]
+        world.wrenches = dict(zip(self.contacts, out[3 * n : self._felt].reshape(-1, 6), strict=True))
+        touching = self._touching.get(mask)
+        if touching is None:
+            touching = frozenset(frame for bit, frame in enumerate(self.contacts) if mask >> bit & 1)
+            self._touching[mask] = touching
+        world.touching = touching
+
+    def readings(self, out: Array) -> dict[str, Array]:
+        """Frame of each sensor → what it reads (6,), out of a period's outcome."""
+        return dict(zip(self.sensors, out[self._felt :].reshape(-1, 6), strict=True))
+
+    def rows(self, pushes: Iterable[Push]) -> list[PushRow]:
+        """Pushes as compiled code takes them."""
+        return (
+            [(self._model.site(p.frame).id, p.force, p.start, p.start + p.duration) for p in pushes] if pushes else []
+        )
+
+
+def compiled_period_of(plant: Any) -> CompiledPeriod | None:
+    """That of a plant whose period can run without Python, with the readings of its sensors told apart by frame."""
+    period = getattr(plant, "compiled", None)
+    if not isinstance(period, CompiledPeriod) or len(set(period.sensors)) < len(period.sensors):
+        return None
+    return period

@@ -1,0 +1,1 @@
+"""The imperfect robot, link by link, in Python."""
