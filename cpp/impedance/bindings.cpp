@@ -55,7 +55,7 @@ int read_tasks(Stack& stack, nb::tuple actual, nb::tuple desired) {
   expect(desired.size(), 2 * stack.tasks(), "desired");
   for (int i = 0; i < stack.tasks(); ++i) {
     TaskInput& in = stack.input()[i];
-    in.retune = nullptr;
+    in.retune = in.axes = nullptr;
     const bool six = stack.axes(i) == 6;
     read_pose(actual[2 * i], actual[2 * i + 1], six, in.actual);
     read_pose(desired[2 * i], desired[2 * i + 1], six, in.desired);
@@ -65,8 +65,22 @@ int read_tasks(Stack& stack, nb::tuple actual, nb::tuple desired) {
   return 0;
 }
 
+// Axes of each task, row-major; `kept` holds them during the step.
+void read_axes(Stack& stack, nb::tuple axes, std::vector<double>& kept) {
+  expect(axes.size(), stack.tasks(), "axes");
+  kept.resize(9 * stack.tasks());
+  for (int i = 0; i < stack.tasks(); ++i) {
+    if (axes[i].is_none()) continue;
+    const auto R = nb::cast<ConstMatrix>(axes[i]);
+    if (R.shape(0) != 3 || R.shape(1) != 3) reject("axes must have shape (3, 3)");
+    for (int j = 0; j < 9; ++j) kept[9 * i + j] = R.data()[j / 3 * R.stride(0) + j % 3 * R.stride(1)];
+    if (!finite(kept.data() + 9 * i, 9)) reject("axes must be finite");
+    stack.input()[i].axes = kept.data() + 9 * i;
+  }
+}
+
 int step(Stack& stack, Vector memory, Vector out, ConstVector q, ConstMatrix J, nb::tuple actual, nb::tuple desired,
-         nb::object bias, nb::object retune) {
+         nb::object bias, nb::object retune, nb::object axes) {
   const int n = stack.joints();
   expect(memory.shape(0), stack.state_size(), "memory");
   expect(out.shape(0), stack.output_size(), "out");
@@ -91,6 +105,8 @@ int step(Stack& stack, Vector memory, Vector out, ConstVector q, ConstMatrix J, 
       stack.input()[task].retune = values.data();
     }
   }
+  std::vector<double> kept;
+  if (!axes.is_none()) read_axes(stack, nb::cast<nb::tuple>(axes), kept);
   stack.step(memory.data(), out.data(), q.data(), J.data(), bias.is_none() ? nullptr : bias_array.data(),
              stack.input());
   return 0;
@@ -190,7 +206,7 @@ NB_MODULE(_impedance, m) {
       .def_prop_ro("output_size", &Stack::output_size)
       .def_prop_ro("kept_back", &Stack::kept_back)
       .def("step", &step, nb::arg("memory"), nb::arg("out"), nb::arg("q"), nb::arg("J"), nb::arg("actual"),
-           nb::arg("desired"), nb::arg("bias").none(), nb::arg("retune").none());
+           nb::arg("desired"), nb::arg("bias").none(), nb::arg("retune").none(), nb::arg("axes").none() = nb::none());
   m.def("drive_axis", &drive_axis, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
         nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(), nb::arg("shape"), nb::arg("tuning"),
         nb::arg("rate_floor"), nb::arg("rotates"), nb::arg("errors"), nb::arg("forces"), nb::arg("balances"));

@@ -41,6 +41,15 @@ inline void log_difference(const double* A, const double* B, double* e) {
   for (int i = 0; i < 3; ++i) e[i] = scale * axis[i];
 }
 
+// R^T v and R v.
+inline void into_axes(const double* R, const double* v, double* out) {
+  for (int j = 0; j < 3; ++j) out[j] = R[j] * v[0] + R[3 + j] * v[1] + R[6 + j] * v[2];
+}
+
+inline void into_world(const double* R, const double* v, double* out) {
+  for (int i = 0; i < 3; ++i) out[i] = R[3 * i] * v[0] + R[3 * i + 1] * v[1] + R[3 * i + 2] * v[2];
+}
+
 // J_l^-1(e) h; with sign = -1 its transpose J_r^-1(e) h.
 inline void left_jacobian_inverse_times(const double* e, const double* h, double sign, double* m) {
   const double angle2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];

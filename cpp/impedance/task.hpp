@@ -1,54 +1,10 @@
 // One frame that the stack holds: a pose error in, a wrench and the energies of its axes out.
 #pragma once
 
-#include <vector>
-
-#include "axis.hpp"
 #include "rotation.hpp"
+#include "task_state.hpp"
 
 namespace pliant::impedance {
-
-struct TaskConfig {
-  int axes;  // 3, or 6 with rotation
-  Shape shape;
-  double rate_floor[2];              // m/s, rad/s
-  std::vector<unsigned char> moves;  // (n) whether the joint moves the frame
-};
-
-struct Pose {
-  double position[3];
-  double rotation[9];  // R_world_frame, row-major
-  bool oriented;
-};
-
-struct TaskState {
-  double work;      // J that the torque of this task, as it was sent, took in from the robot since the last tick
-  double supplied;  // J, by the moving reference
-  double oriented;  // whether the last reference had an orientation
-  double position[3], rotation[9];  // of the last reference
-  double supply[6];                 // wrench that the last reference worked against, N and N m
-  Axis axis[6];
-  AxisState state[6];
-};
-
-// Everything that is known of a tick before the state may change.
-struct TaskInput {
-  Pose actual, desired;
-  const double* retune = nullptr;  // (4, axes): stiffness, force_max, range, linear_range
-};
-
-// What a task adds to the totals of the stack.
-struct TaskEnergies {
-  double stored, supplied, absorbed, dissipated, tuning, spendable;
-};
-
-// Where the errors of a task stand, and what brought them there.
-struct TaskMotion {
-  double error[6] = {}, robot[6] = {};  // now; with the target of the last tick
-  double work[6] = {};                  // J that each axis took in from the robot
-  bool restarts = false;                // the rotation's axes start anew
-  bool by_target = false;               // and it is the target that made them do so
-};
 
 class Task {
  public:
@@ -69,12 +25,15 @@ class Task {
   TaskEnergies step(TaskState& state, const TaskInput& in, bool first, double* channel) const {
     const int k = axes();
     const bool oriented = k == 6 && in.desired.oriented;
-    const TaskMotion motion = motion_of(state, in, oriented, first);
+    const double* now = in.axes ? in.axes : kWorld;
+    if (first) std::copy(now, now + 9, state.axes);
+    TaskMotion motion = motion_of(state, in, oriented, first);
     if (!first) book_supply(state, in.desired, oriented && state.oriented != 0.0);
+    for (int i = 0; i < k; ++i) move_axis(state, in, motion, first, i);
+    if (!std::equal(now, now + 9, state.axes)) turn(state, in, oriented, now, motion);
     double threshold[6];
     TaskEnergies sum{};
     for (int i = 0; i < k; ++i) {
-      move_axis(state, in, motion, first, i);
       const AxisForce f =
           update_force(axis_, config_.shape, state.axis[i], state.state[i], motion.error[i], floor(i), i >= 3);
       threshold[i] = f.threshold;
@@ -95,11 +54,10 @@ class Task {
 
   TaskMotion motion_of(const TaskState& state, const TaskInput& in, bool oriented, bool first) const {
     TaskMotion m;
-    for (int i = 0; i < 3; ++i) {
-      m.error[i] = in.desired.position[i] - in.actual.position[i];
-      m.robot[i] = state.position[i] - in.actual.position[i];
-    }
-    if (oriented) log_difference(in.desired.rotation, in.actual.rotation, m.error + 3);
+    errors(state.axes, in, oriented, m.error);
+    double way[3];
+    for (int i = 0; i < 3; ++i) way[i] = state.position[i] - in.actual.position[i];
+    into_axes(state.axes, way, m.robot);
     if (first) return m;
     const bool same_axes = oriented == (state.oriented != 0.0);
     std::copy(m.error + 3, m.error + 6, m.robot + 3);
@@ -107,7 +65,9 @@ class Task {
       m.restarts = m.by_target = true;
     } else if (oriented) {
       if (!std::equal(state.rotation, state.rotation + 9, in.desired.rotation)) {
-        log_difference(state.rotation, in.actual.rotation, m.robot + 3);
+        double angle[3];
+        log_difference(state.rotation, in.actual.rotation, angle);
+        into_axes(state.axes, angle, m.robot + 3);
       }
       m.restarts = jumps(state, m.error);
       const bool robot_jumps = jumps(state, m.robot);
@@ -116,6 +76,25 @@ class Task {
     }
     if (axis_.account.active) share_work(state, m);
     return m;
+  }
+
+  // x̃ (6,) in a set of axes.
+  static void errors(const double* axes, const TaskInput& in, bool oriented, double* error) {
+    double way[3], angle[3] = {};
+    for (int i = 0; i < 3; ++i) way[i] = in.desired.position[i] - in.actual.position[i];
+    into_axes(axes, way, error);
+    if (oriented) log_difference(in.desired.rotation, in.actual.rotation, angle);
+    into_axes(axes, angle, error + 3);
+  }
+
+  // Other axes from now on: the last period was booked in the old ones. What the profiles store more in the new ones is
+  // supplied by who turned them, as with a change of the tuning, and the axes start anew.
+  void turn(TaskState& state, const TaskInput& in, bool oriented, const double* now, TaskMotion& motion) const {
+    std::copy(now, now + 9, state.axes);
+    errors(now, in, oriented, motion.error);
+    for (int i = 0; i < axes(); ++i) {
+      restart(axis_, config_.shape, state.axis[i], state.state[i], motion.error[i], 0.0, true);
+    }
   }
 
   // The work of one axis is h times its motion. The torque was held in the joints, though, not the force at the frame,
@@ -193,18 +172,23 @@ class Task {
   double set_wrench(TaskState& state, int k, const double* error, double* wrench) const {
     double h[6] = {};
     for (int i = 0; i < k; ++i) h[i] = state.state[i].force;
-    std::copy(h, h + 3, wrench);
-    std::copy(h, h + 3, state.supply);
-    std::fill(wrench + 3, wrench + 6, 0.0);
-    if (k < 6) return 1.0;
-    left_jacobian_inverse_times(error + 3, h + 3, 1.0, wrench + 3);
-    left_jacobian_inverse_times(error + 3, h + 3, -1.0, state.supply + 3);
-    const double scale = axis_.account.active ? moment_scale(state, wrench) : 1.0;
-    if (scale == 1.0) return scale;
-    for (int i = 3; i < 6; ++i) {
+    double turning[6] = {}, meets[6] = {};
+    std::copy(h, h + 3, turning);
+    std::copy(h, h + 3, meets);
+    double scale = 1.0;
+    if (k == 6) {
+      left_jacobian_inverse_times(error + 3, h + 3, 1.0, turning + 3);
+      left_jacobian_inverse_times(error + 3, h + 3, -1.0, meets + 3);
+      if (axis_.account.active) scale = moment_scale(state, turning);
+    }
+    for (int i = 3; scale != 1.0 && i < 6; ++i) {
       state.state[i].force *= scale;
-      wrench[i] *= scale;
-      state.supply[i] *= scale;
+      turning[i] *= scale;
+      meets[i] *= scale;
+    }
+    for (int part = 0; part < 6; part += 3) {
+      into_world(state.axes, turning + part, wrench + part);
+      into_world(state.axes, meets + part, state.supply + part);
     }
     return scale;
   }

@@ -60,6 +60,7 @@ class Stack:
         desired: tuple[NDArray[float64] | None, ...],
         bias: NDArray[float64] | None,
         retune: tuple[tuple[int, NDArray[float64]], ...] | None,
+        axes: tuple[NDArray[float64] | None, ...] | None = None,
     ) -> int:
         """One tick; changes `memory` (state_size) and fills `out` (output_size).
 
@@ -72,6 +73,8 @@ class Stack:
             desired: the same of the reference; a rotation may be None.
             bias: (n,) N·m added to the torque.
             retune: (task, stiffness ‖ force_max ‖ range ‖ linear_range) for each tuning that changes now.
+            axes: R_world_axes (3, 3) of each task, in which its axes are separate; None: the world's. Where they change
+                the axes start anew, and what is stored more is booked as a change of the tuning.
 
         Returns:
             0, or what is not finite (then nothing was changed): 1 for q, 100 + i for frame i, 200 + i for its

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pliant.axis_modes import AxisModes
 from pliant.environment import Environment, FeltSurface
 from pliant.errors import ConfigError
 from pliant.spatial import Array, as_vector
@@ -74,8 +75,7 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class ImpedanceTuning:
-    """Parameters of one fractal impedance task, one entry per axis (3, or 6 with rotation). Swapped whole between two
-    ticks.
+    """Parameters of one fractal impedance task, one entry per axis (3, or 6 with rotation). Swapped whole.
 
     The force grows with `stiffness` up to the error `linear_range`, then bends towards `force_max`, which it reaches
     (to within a fraction of a percent) at `range`. An axis with stiffness and force_max both zero is off.
@@ -149,18 +149,18 @@ class TaskReference:
     acceleration: Array = field(default_factory=lambda: np.zeros(6))
     """(6,) m/s² and rad/s²"""
     wrench: Array = field(default_factory=lambda: np.zeros(6))
-    """(6,) desired reaction of the environment, N and N·m (a tool pressing 40 N on a floor: +40 along z)"""
+    """(6,) desired reaction of the environment, N and N·m (pressing 40 N on a floor: +40 along z)"""
     tuning: ImpedanceTuning | None = None
     """None: the controller's own"""
     task_rotation: Array | None = None
-    """R_world_task (3, 3): the axes in which motion and force are separate; its third column is the believed outward
-    normal of the surface. None: the world's"""
+    """R_world_task (3, 3); its third column is the believed outward normal of the surface. None: the world's"""
+    modes: AxisModes | None = None
+    """of each axis; None: force along what the wrench presses, motion elsewhere"""
 
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """The reference at the nodes of a prediction horizon, N + 1 instants from now on. Controllers without one ignore
-    it."""
+    """The reference at the nodes of a prediction horizon, N + 1 instants from now on."""
 
     time: Array
     """(N+1,) s"""

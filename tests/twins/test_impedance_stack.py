@@ -188,3 +188,56 @@ def test_what_is_not_finite_is_named_and_changes_nothing(place: str, code: int) 
     assert stack.step(memory, out, q, np.zeros((6, 9), order="F"), (pose, None), (target, None), None, None) == code
     assert not memory.any()
     assert (out == 7.0).all()
+
+
+def driven_in_axes(axes: list[Array | None], turned: Array, steps: int = 250) -> dict[str, Array]:
+    """Channels of one 6-axis task over random motion. Args: axes: of each tick; turned: (3, 3) of the whole world."""
+    rng = np.random.default_rng(7)
+    stack = core(Law.CAPPED, [Shape.EXPONENTIAL], [6], 40.0)
+    table = channel_table(JOINTS, [("a", 6)])
+    memory, out = np.zeros(stack.state_size), np.zeros(stack.output_size)
+    actual, desired, tuning = wander(rng, steps), wander(rng, steps), random_tuning(rng, 6)
+    retune = ((0, packed(ForceProfile.of(tuning, Shape.EXPONENTIAL))),)
+    found: dict[str, list[Array]] = {}
+    q, last = np.zeros(JOINTS), None
+    for step in range(steps):
+        pose = (turned @ actual[step, :3], turned @ exp3(actual[step, 3:]))
+        target = (turned @ desired[step, :3], turned @ exp3(desired[step, 3:]))
+        J = np.zeros((6, JOINTS), order="F")
+        J[:3, :3] = J[3:, 3:6] = turned
+        J[:3, 3:6] = np.cross(pose[0], turned.T).T
+        moved = np.zeros(6) if last is None else np.concatenate([pose[0] - last[0], log3(pose[1] @ last[1].T)])
+        q[:3], q[3:6], last = q[:3] + turned.T @ moved[:3], q[3:6] + turned.T @ moved[3:], pose
+        code = stack.step(memory, out, q, J, pose, target, None, retune if step == 0 else None, (axes[step],))
+        assert code == 0
+        for name, value in Diagnostics(table, out.copy()).items():
+            found.setdefault(name, []).append(np.array(value))
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def test_axes_that_are_turned_with_the_world_give_the_same() -> None:
+    """A law that is the same in every set of axes: turning world and axes together changes no torque of its joints."""
+    R = exp3(np.array([0.4, -0.9, 1.3]))
+    level, turned = driven_in_axes([None] * 250, np.eye(3)), driven_in_axes([R] * 250, R)
+    for name, values in level.items():
+        wanted = values
+        if name.endswith("/wrench"):
+            wanted = np.hstack([values[:, :3] @ R.T, values[:, 3:] @ R.T])
+        np.testing.assert_allclose(turned[name], wanted, atol=1e-7 * max(1.0, np.abs(wanted).max()), err_msg=name)
+    world = driven_in_axes([None] * 250, R)
+    assert np.abs(world["a/force"] - level["a/force"]).max() > 1.0  # the control: axes of the world are others
+
+
+def test_axes_that_turn_on_the_way_are_booked_as_a_change_of_the_tuning() -> None:
+    R = exp3(np.array([0.4, -0.9, 1.3]))
+    once = driven_in_axes([None] * 120 + [R] * 130, np.eye(3))
+    never = driven_in_axes([None] * 250, np.eye(3))
+    tuning = once["a/energy_tuning"].ravel()
+    assert np.all(tuning[:120] == never["a/energy_tuning"].ravel()[:120])
+    assert tuning[120] != tuning[119]
+    assert np.all(tuning[120:] == tuning[120])
+    for name, values in once.items():
+        np.testing.assert_array_equal(values[:120], never[name][:120], err_msg=name)
+    started = once["a/energy_stored"].ravel()[0] + once["a/energy_dissipated"].ravel()[0]
+    assert np.isfinite(started)
+    assert np.isfinite(np.concatenate([values.ravel() for values in once.values()])).all()

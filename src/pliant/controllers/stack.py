@@ -15,12 +15,12 @@ from pliant.controllers.energy_ledger import Diagnostics, LedgerChannel, channel
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import linear_range
-from pliant.controllers.stack_input import check_stack, joints_that_move, target_of
+from pliant.controllers.stack_input import check_stack, free_axes, joints_that_move, loosened, target_of
 from pliant.controllers.task import FrameTask
 from pliant.errors import ShapeError, SignalError
 from pliant.interfaces import Controller, Needs
 from pliant.robot import Robot
-from pliant.signals import Command, Estimate, ImpedanceTuning, Reference
+from pliant.signals import Command, Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import Array
 
 
@@ -30,6 +30,8 @@ class StackState:
 
     memory: Array
     tunings: tuple[ImpedanceTuning | None, ...]
+    free: tuple[tuple[bool, ...], ...]
+    """of each task, which axes are left alone; empty: none"""
     workspace: _Workspace
     """scratch memory of the kinematics; nothing in it outlives a step"""
 
@@ -60,7 +62,9 @@ class Stack(Controller[StackState]):
     sampling, clamps and changes of its tuning let out, see `passivity_account`.
 
     Forces come from position errors alone: `TaskReference.velocity` and `.acceleration` are not used, `.wrench` for the
-    direction of `force_damping` alone. A task whose reference has no rotation leaves the orientation free for as long.
+    direction of `force_damping` alone. Axes are the world's, or those of `TaskReference.modes`: a "free" one gives no
+    force; where they turn, the axes start anew (`cpp/impedance/task.hpp`). A task whose reference has no rotation
+    leaves the orientation free for as long.
 
     `Command.diagnostics` holds the energy ledger and the state of every axis; `channels` says what is in it.
     """
@@ -139,7 +143,8 @@ class Stack(Controller[StackState]):
         """Every axis starts diverging, with an empty ledger. Raises ShapeError for a robot with other joints."""
         self.robot.vector(estimate.q, "q")
         memory = np.zeros(self._core.state_size)
-        return StackState(memory, (None,) * len(self.tasks), _Workspace(self.robot.model, self._frames))
+        none, work = (None,) * len(self.tasks), _Workspace(self.robot.model, self._frames)
+        return StackState(memory, none, ((),) * len(self.tasks), work)
 
     def step(self, estimate: Estimate, reference: Reference, state: StackState) -> tuple[Command, StackState]:
         """The torque for the next period, and the next state.
@@ -150,22 +155,26 @@ class Stack(Controller[StackState]):
             SignalError: q or a pose that is not finite.
         """
         model, work = self.robot.model, state.workspace
-        desired, tunings = self._read(reference, state.tunings)
-        retune = None if tunings is state.tunings else self._changed(state.tunings, tunings)
+        targets = [target_of(reference, i, task.frame) for i, task in enumerate(self.tasks)]
+        desired = tuple([part for target in targets for part in (target.position, target.rotation)])
+        tunings, free = self._tunings(targets, state)
+        same = tunings is state.tunings and free == state.free
+        retune = None if same else self._changed(state, tunings, free)
+        axes = tuple([None if target.modes is None else target.modes.rotation for target in targets])
         memory, out = state.memory.copy(), np.empty(self._core.output_size)
         try:
             pin.computeJointJacobians(model, work.data, estimate.q)
             for frame in self._frames:
                 pin.updateFramePlacement(model, work.data, frame)
             bias = self._bias(estimate, reference, work.data)
-            code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune)
+            code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune, axes)
         except (ValueError, TypeError, RuntimeError) as error:
             raise ShapeError(self._misshapen(estimate, desired, error)) from error
         if code:
             raise SignalError(self._not_finite(code, estimate))
         n = self.robot.n
         command = Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out))
-        return command, StackState(memory, tunings, work)
+        return command, StackState(memory, tunings, free, work)
 
     def _bias(self, estimate: Estimate, reference: Reference, data: pin.Data) -> Array | None:
         """(n,) N·m beside the tasks; None for nothing."""
@@ -195,32 +204,30 @@ class Stack(Controller[StackState]):
         memory[start : start + self.robot.n] += torque
         return replace(state, memory=memory)
 
-    def _read(
-        self, reference: Reference, last: tuple[ImpedanceTuning | None, ...]
-    ) -> tuple[tuple[Any, ...], tuple[ImpedanceTuning | None, ...]]:
-        """Targets (position, rotation) of each task in the core's order; the tunings, `last` itself if none changed."""
-        desired: list[Any] = []
-        tunings = last
-        for i, task in enumerate(self.tasks):
-            target = target_of(reference, i, task.frame)
-            desired += (target.position, target.rotation)
+    def _tunings(
+        self, targets: Sequence[TaskReference], last: StackState
+    ) -> tuple[tuple[ImpedanceTuning | None, ...], tuple[tuple[bool, ...], ...]]:
+        """The tunings, those of `last` themselves if none changed, and the axes that are left alone."""
+        tunings = last.tunings
+        for i, (task, target) in enumerate(zip(self.tasks, targets, strict=True)):
             tuning = target.tuning or task.tuning
             if tuning is not tunings[i]:
                 tunings = (*tunings[:i], tuning, *tunings[i + 1 :])
-        return tuple(desired), tunings
+        return tunings, tuple([free_axes(target) for target in targets])
 
     def _changed(
-        self, last: tuple[ImpedanceTuning | None, ...], tunings: tuple[ImpedanceTuning | None, ...]
+        self, last: StackState, tunings: tuple[ImpedanceTuning | None, ...], free: tuple[tuple[bool, ...], ...]
     ) -> tuple[tuple[int, Array], ...]:
         changes: list[tuple[int, Array]] = []
-        for i, (old, new) in enumerate(zip(last, tunings, strict=True)):
-            if new is None or new is old:
+        for i, new in enumerate(tunings):
+            if new is None or (new is last.tunings[i] and free[i] == last.free[i]):
                 continue
             if new.axes != self.tasks[i].axes:
                 raise ShapeError(
                     f"task {self.tasks[i].label!r} has {self.tasks[i].axes} axes, its new tuning {new.axes}"
                 )
-            changes.append((i, np.concatenate([new.stiffness, new.force_max, new.range, linear_range(new)])))
+            used = loosened(new, free[i]) if free[i] else new
+            changes.append((i, np.concatenate([used.stiffness, used.force_max, used.range, linear_range(used)])))
         return tuple(changes)
 
     def _misshapen(self, estimate: Estimate, desired: Sequence[Any], error: Exception) -> str:

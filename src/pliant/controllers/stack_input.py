@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from pliant.controllers.task import FrameTask
 from pliant.errors import ConfigError, options
 from pliant.robot import Robot
-from pliant.signals import Reference, TaskReference
+from pliant.signals import ImpedanceTuning, Reference, TaskReference
 
 
 def target_of(reference: Reference, place: int, frame: str) -> TaskReference:
@@ -30,6 +33,22 @@ def check_stack(tasks: Sequence[FrameTask], period: float, joint_damping: float,
     labels = [task.label for task in tasks]
     if not tasks or len(set(labels)) != len(labels):
         raise ConfigError(f"a stack needs one or more tasks with different labels, got {labels}")
+
+
+def loosened(tuning: ImpedanceTuning, free: tuple[bool, ...]) -> ImpedanceTuning:
+    """A tuning that gives no force along free axes. Args: free: (6,)."""
+    kept = np.array([not one for one in free[: tuning.axes]], dtype=np.float64)
+    if kept.all():
+        return tuning
+    return replace(tuning, stiffness=kept * tuning.stiffness, force_max=kept * tuning.force_max, linear_range=None)
+
+
+def free_axes(task: TaskReference) -> tuple[bool, ...]:
+    """(6,) which axes of a task are left alone; empty: none."""
+    if task.modes is None or "free" not in task.modes.modes:
+        return ()
+    free = task.modes.having("free")
+    return free if task.rotation is not None or any(free[:3]) else ()
 
 
 def joints_that_move(robot: Robot, frame: int) -> list[bool]:

@@ -127,8 +127,10 @@ class Stages(ReferenceSource[StageState]):
         return StageState(0, estimate.time, self._place(estimate), estimate.time, 0, task, self._whole)
 
     def step(self, estimate: Estimate, state: StageState) -> tuple[Reference, StageState]:
-        """Raises RunFailedError where a timeout that is a failure ends a stage."""
+        """Raises RunFailedError where a timeout that is a failure ends a stage, or a bound of its force axes is
+        passed."""
         state = self._changed(self._advanced(estimate, state), estimate.time)
+        self._kept(estimate, state)
         return self._said(estimate.time, state), state
 
     def coming(self, state: StageState, until: float) -> list[Reference]:
@@ -173,6 +175,19 @@ class Stages(ReferenceSource[StageState]):
             return state
         return self._next(state, estimate.time, self._place(estimate))
 
+    def _kept(self, estimate: Estimate, state: StageState) -> None:
+        """Raises RunFailedError where the frame has moved farther along force axes than the stage allows."""
+        modes = state.task.modes
+        if modes is None or np.isinf(modes.deviation):
+            return
+        way = modes.rotation.T @ (self._place(estimate) - state.place)
+        gone = float(np.linalg.norm(way[list(modes.having("force")[:3])]))
+        if gone > modes.deviation:
+            raise RunFailedError(
+                f"phase {self.stages[state.stage].name!r} moved {1e3 * gone:.1f} mm along its force axes, and"
+                f" limit.deviation allows {1e3 * modes.deviation:g} mm: is what it should touch where it was believed?"
+            )
+
     def _holds(self, ending: Ending, estimate: Estimate, state: StageState) -> bool:
         if estimate.time - state.begin < ending.duration - _ROUNDING:
             return False
@@ -200,7 +215,8 @@ class Stages(ReferenceSource[StageState]):
             if change.wrench is not None:
                 axes = task_axes(np.eye(3) if task.task_rotation is None else task.task_rotation, change.wrench)
                 axes = task.task_rotation if axes is None else axes
-                task = replace(task, wrench=change.wrench, task_rotation=axes)
+                modes = None if task.modes is None else task.modes.pressing(change.wrench)
+                task = replace(task, wrench=change.wrench, task_rotation=axes, modes=modes)
             if change.tuning and task.tuning is not None:
                 task = replace(task, tuning=replace(task.tuning, **change.tuning))
             whole = state.whole.model_copy(update=change.whole) if change.whole else state.whole

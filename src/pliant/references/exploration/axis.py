@@ -91,6 +91,7 @@ class ExploredAxis:
         position: float,
         time: float,
         period: float,
+        asked: bool = False,
     ) -> None:
         """Moves the offset.
 
@@ -102,8 +103,9 @@ class ExploredAxis:
             position: x_d without the offset, m.
             time: s.
             period: s since the last step.
+            asked: whether F_d = 0 is a request: the target then gives way until F is below the threshold of contact.
         """
-        if desired == 0.0 and self.offset == 0.0 and self.phase is AxisPhase.OFF:
+        if desired == 0.0 and not asked and self.offset == 0.0 and self.phase is AxisPhase.OFF:
             self.target, self.wanted, self.clamped, self.filtered = position, 0.0, 0.0, force
             return
         wanted = min(max(desired, -limits.force_max), limits.force_max)
@@ -111,7 +113,7 @@ class ExploredAxis:
         if abs(wanted) < abs(self.wanted) - rules.contact_on:
             self.relief = _RELIEF
         self.wanted, self.relief = wanted, max(self.relief - period, 0.0)
-        active = wanted != 0.0 and limits.stiffness > 0.0
+        active = (wanted != 0.0 or asked) and limits.stiffness > 0.0
         self._feel(rules, force, period)
         self._switch(rules, active, period)
         if self.phase is AxisPhase.CONTACT:
@@ -126,9 +128,11 @@ class ExploredAxis:
                 self._learn(rules, limits.stiffness, lasting, time, period)
             gain = _HASTE * rules.gain if self.retreat.began else rules.gain
             rate = -gain * (wanted - lasting) / self.stiffness
-            asked = self.relief > 0.0 and self.stiffness > 0.5 * limits.stiffness
+            eased = self.relief > 0.0 and self.stiffness > 0.5 * limits.stiffness
             rate = min(max(rate, -rules.speed), rules.speed)
-            free = self.offset + self.retreat.rate(rules, rate, force, wanted, period, asked) * period
+            if wanted != 0.0:
+                rate = self.retreat.rate(rules, rate, force, wanted, period, eased)
+            free = self.offset + rate * period
         else:
             self._forget(limits.stiffness)
             free = self._returning(rules, wanted, period)
@@ -196,7 +200,7 @@ class ExploredAxis:
     def _returning(self, rules: AxisRules, wanted: float, period: float) -> float:
         """Offset of an axis that does not regulate."""
         offset = self.offset
-        if self.phase is AxisPhase.LOST:
+        if self.phase is AxisPhase.LOST or (self.phase is AxisPhase.FREE and wanted == 0.0):
             return offset
         if self.phase is AxisPhase.FREE and rules.seek_speed > 0.0:
             return offset - math.copysign(rules.seek_speed * period, wanted)

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
+import numpy as np
+
+from pliant.axis_modes import AxisModes
 from pliant.references.exploration.axis import AxisPhase, ExploredAxis
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.contact_normal import Vector, turned_normal, within_cone
@@ -26,7 +30,7 @@ class FrameRules:
 class ExploredFrame:
     """State of one frame. `step` changes it in place."""
 
-    __slots__ = ("along", "axes", "limits", "normal", "offsets", "tuning")
+    __slots__ = ("along", "axes", "limits", "linear", "modes", "normal", "offsets", "tuning")
 
     def __init__(self) -> None:
         self.axes = [ExploredAxis() for _ in range(6)]
@@ -34,9 +38,12 @@ class ExploredFrame:
         """the direction of the normal, if there is one"""
         self.normal: Vector | None = None
         self.offsets = [0.0] * 6
-        """Δx of every axis, m and rad"""
+        """Δx of every axis, m and rad, in the axes of the modes"""
         self.tuning: ImpedanceTuning | None = None
         self.limits: list[AxisLimits] = []
+        self.modes: AxisModes | None = None
+        self.linear: tuple[AxisRules, AxisRules] | None = None
+        """rules of the translations: as they are given, and within the bounds of the modes"""
 
     def step(
         self,
@@ -48,6 +55,7 @@ class ExploredFrame:
         velocity: list[float],
         time: float,
         period: float,
+        modes: AxisModes | None = None,
     ) -> None:
         """Moves the offsets.
 
@@ -60,7 +68,10 @@ class ExploredFrame:
             velocity: of x_d (3,), m/s.
             time: s.
             period: s since the last tick.
+            modes: of the axes, in whose axes the rest is told; None: a force where F_d is not zero, world axes.
         """
+        if modes is not self.modes:
+            self._turn_axes(modes)
         if tuning is not self.tuning:
             self._take(tuning)
         if measured is None:
@@ -72,14 +83,16 @@ class ExploredFrame:
         if rules.config.direction == "normal" and rules.config.mode == "adaptive":
             self._step_normal(rules, desired, measured, position, velocity, time, period)
             first = 3
+        linear = self._linear(rules)
         for index in range(first, len(self.limits)):
             axis, limits = self.axes[index], self.limits[index]
-            kind = rules.linear if index < 3 else rules.angular
+            kind = linear if index < 3 else rules.angular
             if rules.config.mode == "paper":
                 _step_printed(axis, limits, desired[index], measured[index], rules.config)
             else:
                 x = position[index] if index < 3 else 0.0
-                axis.step(kind, limits, desired[index], measured[index], x, time, period)
+                asked = modes is not None and modes.modes[index] == "force"
+                axis.step(kind, limits, desired[index], measured[index], x, time, period, asked)
             self.offsets[index] = axis.offset
 
     def _take(self, tuning: ImpedanceTuning) -> None:
@@ -87,8 +100,36 @@ class ExploredFrame:
         self.tuning = tuning
         values = zip(tuning.stiffness.tolist(), tuning.force_max.tolist(), tuning.range.tolist(), strict=True)
         self.limits = [AxisLimits(k, f, b if k > 0.0 else 0.0) for k, f, b in values]
+        if self.modes is not None:
+            far = self.modes.deviation
+            linear = [limit._replace(range=min(limit.range, far)) for limit in self.limits[:3]]
+            self.limits = [
+                AxisLimits(0.0, 0.0, 0.0) if mode == "free" else limit
+                for mode, limit in zip(self.modes.modes, linear + self.limits[3:], strict=False)
+            ]
         self.axes[len(self.limits) :] = [ExploredAxis() for _ in range(6 - len(self.limits))]
         self._bound()
+
+    def _turn_axes(self, modes: AxisModes | None) -> None:
+        """Other modes, perhaps of other axes: the offset stays where it is in the world, its axes begin anew."""
+        before, self.modes, self.tuning, self.linear = self.modes, modes, None, None
+        if not (_turned(before) or _turned(modes)):
+            return
+        world = in_world(before, self.offsets)
+        self.offsets = world if modes is None else modes.into(np.array(world)).tolist()
+        self.axes = [ExploredAxis() for _ in range(6)]
+        for axis, offset in zip(self.axes, self.offsets, strict=True):
+            axis.offset = offset
+
+    def _linear(self, rules: FrameRules) -> AxisRules:
+        """Rules of the translations within the bounds of the modes."""
+        if self.modes is None or math.isinf(self.modes.speed):
+            return rules.linear
+        if self.linear is None or self.linear[0] is not rules.linear:
+            given, most = rules.linear, self.modes.speed
+            speeds = {name: min(getattr(given, name), most) for name in ("speed", "reset_speed", "seek_speed")}
+            self.linear = given, replace(given, **speeds)
+        return self.linear[1]
 
     def _bound(self) -> None:
         for index, limits in enumerate(self.limits):
@@ -149,6 +190,19 @@ class ExploredFrame:
         elif self.along.phase is AxisPhase.FREE and self.along.offset == 0.0:
             normal = wanted  # nothing is touched and nothing would jump
         self.normal = within_cone(normal, wanted, config.normal_cone)
+
+
+def in_world(modes: AxisModes | None, offsets: list[float]) -> list[float]:
+    """(6,) of the axes of the modes in the world's."""
+    if not _turned(modes):
+        return offsets
+    assert modes is not None
+    R = modes.rotation
+    return [*(R @ offsets[:3]).tolist(), *(R @ offsets[3:]).tolist()]
+
+
+def _turned(modes: AxisModes | None) -> bool:
+    return modes is not None and modes.turned
 
 
 def _limits_along(limits: list[AxisLimits], normal: Vector) -> AxisLimits:

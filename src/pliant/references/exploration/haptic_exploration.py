@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from pliant.axis_modes import AxisModes
 from pliant.errors import ConfigError, SignalError, options
 from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.references.exploration.frame import ExploredFrame, FrameRules
+from pliant.references.exploration.frame import ExploredFrame, FrameRules, in_world
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import Array, exp3
 
@@ -112,13 +113,15 @@ class HapticExploration(ReferenceSource[ExplorationState]):
     ) -> TaskReference:
         """The task with its target shifted."""
         tuning = task.tuning or self.tunings.get(task.frame)
+        modes = task.modes if state.rules.config.direction == "axes" else None
+        asked = bool(task.wrench.any()) or (modes is not None and "force" in modes.modes)
         desired: list[float] = task.wrench.tolist()
         place: list[float] = task.position.tolist()
         if not math.isfinite(sum(desired) + sum(place)):
             raise SignalError(f"the reference of frame {task.frame!r} is not finite: {place} m, {desired} N and N·m")
         frame = state.frames.get(task.frame)
         if frame is None or estimate.time - frame.time > _FORGOTTEN:
-            if not any(desired):
+            if not asked:
                 return task  # nothing to feel, and nothing shifted so far
             frame = state.frames[task.frame] = _Frame(task.frame, estimate.time)
         frame.time = estimate.time
@@ -127,11 +130,24 @@ class HapticExploration(ReferenceSource[ExplorationState]):
                 f"frame {task.frame!r} needs its impedance (stiffness, force_max, range) to be explored: give the task"
                 f" a tuning, or HapticExploration one for the frame; {options(self.tunings, task.frame)}"
             )
-        measured = _usable(estimate, task, any(desired))
-        explored = frame.explored
-        explored.step(state.rules, tuning, desired, measured, place, task.velocity.tolist(), estimate.time, period)
+        measured = _usable(estimate, task, asked)
+        explored, velocity = frame.explored, task.velocity.tolist()
+        told = desired, measured, place, velocity
+        if modes is not None and modes.turned:
+            told = _in_axes(modes, task, measured)
+        explored.step(state.rules, tuning, *told, estimate.time, period, modes)
         _report(frame, diagnostics)
         return _shifted(task, explored, tuning, desired, place)
+
+
+def _in_axes(
+    modes: AxisModes, task: TaskReference, measured: list[float] | None
+) -> tuple[list[float], list[float] | None, list[float], list[float]]:
+    """Desired and measured wrench, place and velocity in the axes of the modes."""
+    felt = None if measured is None else modes.into(np.array(measured)).tolist()
+    place: list[float] = (modes.rotation.T @ task.position).tolist()
+    pressed = zip(modes.into(task.wrench).tolist(), modes.having("force"), strict=True)
+    return [part if asked else 0.0 for part, asked in pressed], felt, place, modes.into(task.velocity).tolist()
 
 
 def _usable(estimate: Estimate, task: TaskReference, needed: bool) -> list[float] | None:
@@ -171,13 +187,13 @@ def _report(frame: _Frame, diagnostics: dict[str, float | Array]) -> None:
 def _shifted(
     task: TaskReference, explored: ExploredFrame, tuning: ImpedanceTuning, desired: list[float], place: list[float]
 ) -> TaskReference:
-    offsets = explored.offsets
+    offsets = in_world(explored.modes, explored.offsets)
     position = np.array((place[0] + offsets[0], place[1] + offsets[1], place[2] + offsets[2]))
     rotation = task.rotation
     if rotation is not None and (offsets[3] or offsets[4] or offsets[5]):
         rotation = exp3(offsets[3:]) @ rotation
     wrench = task.wrench
-    clamped = [axis.clamped for axis in explored.axes]
+    clamped = in_world(explored.modes, [axis.clamped for axis in explored.axes])
     if any(clamped):
         wrench = np.array([f - c for f, c in zip(desired, clamped, strict=True)])
     return changed(task, position=position, rotation=rotation, wrench=wrench, tuning=tuning)

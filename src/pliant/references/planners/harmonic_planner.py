@@ -175,8 +175,9 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
             frame.rotation = task.rotation
         way = float(np.linalg.norm(np.subtract(target, frame.linear.target)))
         angle = float(np.linalg.norm(np.subtract(turn, frame.turn.target)))
-        least = max(self.limits.linear.duration(way), self.limits.angular.duration(angle))
-        frame.linear = frame.linear.retargeted(time, target, self.limits.linear, least)
+        linear = self.limits.linear.bounded(task.modes, np.subtract(target, frame.linear.target))
+        least = max(linear.duration(way), self.limits.angular.duration(angle))
+        frame.linear = frame.linear.retargeted(time, target, linear, least)
         frame.turn = frame.turn.retargeted(time, turn, self.limits.angular, least)
         frame.position, frame.taken, frame.resting = task.position, time, None
 

@@ -10,12 +10,13 @@ a straight line.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from pliant.axis_modes import AxisModes
 from pliant.errors import ConfigError
 from pliant.spatial import Array
 
@@ -39,6 +40,15 @@ class MotionLimits:
         """Least time in s for a half cosine over a distance in m or rad."""
         # peaks of a half cosine: speed π d/(2T), acceleration π² d/(2T²)
         return max(0.5 * math.pi * distance / self.speed, math.pi * math.sqrt(0.5 * distance / self.acceleration))
+
+    def bounded(self, modes: AxisModes | None, way: Array) -> MotionLimits:
+        """Limits of a motion along a way (3,) m that keep what modes allow along force axes."""
+        if modes is None or math.isinf(modes.speed):
+            return self
+        along = float(np.linalg.norm((modes.rotation.T @ way)[list(modes.having("force")[:3])]))
+        if along == 0.0:
+            return self
+        return replace(self, speed=min(self.speed, modes.speed * float(np.linalg.norm(way)) / along))
 
 
 class HalfCosine(NamedTuple):

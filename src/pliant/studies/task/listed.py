@@ -17,10 +17,10 @@ from pliant.simulation.scene import Thing
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.phase_axes import axis_modes, check_axes, frame_axes
 from pliant.studies.task.pressed import with_axes
 from pliant.tasks.draws import drawn
-from pliant.tasks.parts import Pose
-from pliant.tasks.phase import Condition, Event, PerAxis, Phase
+from pliant.tasks.phase import Condition, Event, PerAxis
 from pliant.tasks.phase import Thing as Described
 
 _CHANGES = ("target", "wrench", "stiffness", "force_max", "range", "reset")
@@ -66,28 +66,31 @@ def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...
     Raises:
         ConfigError: a thing that there is not, or something that no controller can do.
     """
-    frame, target, wrench, held = frame_of(case), None, np.zeros(6), False
+    frame, target, told, held = frame_of(case), None, np.zeros(6), False
     robot.frame_id(frame)
     axes, origin = np.eye(3), np.zeros(3)
     found: list[Stage] = []
-    frames: list[Array] = []
     for name, phase in zip(case.phase_names(), case.phase, strict=True):
-        axes, origin = (axes, origin) if phase.frame is None else _axes(case, name, phase.frame)
-        _possible(case, name, phase)
+        before = axes
+        axes, origin = (axes, origin) if phase.frame is None else frame_axes(case, name, phase.frame)
         if phase.target is not None:
             target = origin + axes @ np.array(phase.target)
         if target is None:
             raise ConfigError(f"phase {name!r}: the first phase needs a target")
         if phase.wrench is not None:
-            told = np.array([*phase.wrench, *([0.0] * (6 - len(phase.wrench)))])
-            wrench, held = np.concatenate([axes @ told[:3], axes @ told[3:]]), len(phase.wrench) == 6
+            told, held = np.array([*phase.wrench, *([0.0] * (6 - len(phase.wrench)))]), len(phase.wrench) == 6
+        elif axes is not before:  # the same in the world
+            told = np.concatenate([axes.T @ before @ told[:3], axes.T @ before @ told[3:]])
+            told[np.abs(told) < 1e-9 * np.abs(told).max()] = 0.0
+        check_axes(case, name, phase, told)
         if phase.modes is not None:
-            held = "free" not in phase.modes[3:]
-        task = TaskReference(frame, target, rotation if held else None, wrench=wrench)
+            held = set(phase.modes[3:]) != {"free"}
+        wrench = np.concatenate([axes @ told[:3], axes @ told[3:]])
+        modes = axis_modes(phase, axes, told, held)
+        task = TaskReference(frame, target, rotation if held else None, wrench=wrench, modes=modes)
         endings = tuple(_ending(one, phase.otherwise) for one in phase.conditions)
         found.append(Stage(name, task, endings))
-        frames.append(axes)
-    return with_axes(found, frames)
+    return with_axes(found)
 
 
 def changes_of(case: TaskCase) -> tuple[StageChange, ...]:
@@ -101,49 +104,6 @@ def changes_of(case: TaskCase) -> tuple[StageChange, ...]:
 def per_axis(value: PerAxis) -> Array:
     """(3,)."""
     return np.broadcast_to(np.asarray(value, dtype=np.float64), 3).copy()
-
-
-def _possible(case: TaskCase, name: str, phase: Phase) -> None:
-    if phase.motion is not None:
-        raise ConfigError(
-            f"phase {name!r}: a motion along its free axes while others press cannot be run yet; give a target, or"
-            " several phases with targets"
-        )
-    if phase.limit is not None:
-        raise ConfigError(f"phase {name!r}: limit cannot be run yet; planner.speed bounds the motion of targets")
-    if phase.touch is not None and phase.touch not in case.scene:
-        raise ConfigError(f"phase {name!r}: touch names no thing of the scene; {options(case.scene, phase.touch)}")
-    if phase.modes is None:
-        return
-    wrench = np.zeros(6) if phase.wrench is None else np.array([*phase.wrench, *([0.0] * (6 - len(phase.wrench)))])
-    axes = ("x", "y", "z", "about x", "about y", "about z")
-    silent = [axis for axis, mode, size in zip(axes, phase.modes, wrench, strict=True) if mode == "force" and not size]
-    if silent:
-        raise ConfigError(
-            f"phase {name!r}: modes ask for a force of zero ({', '.join(silent)}), which no controller regulates yet:"
-            " give these axes a wrench, or make them motion, or all three rotations free"
-        )
-    if "free" in phase.modes[:3]:
-        raise ConfigError(f"phase {name!r}: no controller leaves single translations free; modes: motion or force")
-    rotations = phase.modes[3:]
-    if "free" in rotations and set(rotations) != {"free"}:
-        raise ConfigError(f"phase {name!r}: the three rotations are free together or not at all")
-    both = [axis for axis, mode, size in zip(axes, phase.modes, wrench, strict=True) if mode != "force" and size]
-    if both:
-        raise ConfigError(f"phase {name!r}: wrench presses along axes whose mode is not force: {', '.join(both)}")
-
-
-def _axes(case: TaskCase, name: str, frame: str | Pose) -> tuple[Array, Array]:
-    """R_world_frame (3, 3) and origin (3,) m of what a phase's numbers are in."""
-    if isinstance(frame, Pose):
-        return frame.rotation, np.array(frame.xyz)
-    if frame == "world":
-        return np.eye(3), np.zeros(3)
-    if frame not in case.scene:
-        known = ["world", *case.scene]
-        raise ConfigError(f"phase {name!r}: frame is world, a thing of the scene or a pose; {options(known, frame)}")
-    pose = case.scene[frame].pose
-    return pose.rotation, np.array(pose.xyz)
 
 
 def _ending(condition: Condition, otherwise: str) -> Ending:

@@ -9,6 +9,7 @@ import numpy as np
 
 from pliant.references.force_axes import task_axes
 from pliant.references.stages import Stage, StageChange
+from pliant.signals import TaskReference
 from pliant.spatial import Array
 from pliant.surfaces import FacetSurface, PlaneSurface, SurfaceGeometry
 
@@ -16,12 +17,10 @@ _SAME = 1e-9
 """1 − cosine of the angle below which two directions are one"""
 
 
-def with_axes(stages: Sequence[Stage], frames: Sequence[Array]) -> tuple[Stage, ...]:
-    """The stages with the axes of their forces; one without a force has those of the next that presses, or of the last.
-
-    Args: frames: (3, 3) R_world_frame of each.
-    """
-    own = [task_axes(frame, stage.task.wrench) for stage, frame in zip(stages, frames, strict=True)]
+def with_axes(stages: Sequence[Stage]) -> tuple[Stage, ...]:
+    """The stages with the axes of their forces; one without a force has those of the next that presses, or of the
+    last."""
+    own = [task_axes(_frame(stage.task), pressed_along(stage.task)) for stage in stages]
     after: Array | None = None
     filled = list[Array | None]()
     for axes in reversed(own):
@@ -34,11 +33,24 @@ def with_axes(stages: Sequence[Stage], frames: Sequence[Array]) -> tuple[Stage, 
     )
 
 
+def pressed_along(task: TaskReference) -> Array:
+    """(3,) along which a task presses, of any length: its force, or the last force axis on which 0 N are asked for;
+    zero without one."""
+    if np.any(task.wrench[:3]) or task.modes is None:
+        return task.wrench[:3]
+    asked = [axis for axis in range(3) if task.modes.modes[axis] == "force"]
+    return task.modes.rotation[:, asked[-1]] if asked else np.zeros(3)
+
+
+def _frame(task: TaskReference) -> Array:
+    return np.eye(3) if task.modes is None else task.modes.rotation
+
+
 def pressed_planes(stages: Sequence[Stage], changes: Sequence[StageChange]) -> SurfaceGeometry | None:
     """The planes across the forces through the targets, one per direction; None: nothing is pressed."""
     found: list[PlaneSurface] = []
     for task in (stage.task for stage in stages):
-        _add(found, task.wrench, task.position)
+        _add(found, pressed_along(task), task.position)
     place = stages[-1].task.position
     for change in changes:
         place = place if change.target is None else change.target
