@@ -22,7 +22,8 @@ _EVEN = 0.03  # N, 0.2 % of the force: two errors that differ by less are one
 
 @pytest.mark.study
 @pytest.mark.parametrize(
-    ("controller", "late"), [("offset-free-mpc", True), ("force-feedback-mpc", False), ("haptic", True)]
+    ("controller", "late"),
+    [("offset-free-mpc", True), ("force-feedback-mpc", False), ("haptic", True), ("operational-space", True)],
 )
 def test_a_tilted_plane_is_as_good_as_a_level_one(controller: str, late: bool) -> None:
     level = run_tilted(0.0, controller, late=late)

@@ -161,6 +161,13 @@ class OperationalSpaceConfig(ControllerConfig):
         default=OperationalSpace.compensation,
         description="what the model adds; without gravity where the robot compensates itself",
     )
+    force_integral: float = quantity(
+        OperationalSpace.force_integral,
+        "1/s",
+        "k_i: along force axes F_d + k_i ∫(F_d − F) is pressed while there is contact; 0: no force is regulated",
+        shown=(0.0, 60.0),
+        ge=0.0,
+    )
 
 
 def _spread(value: PerAxis) -> Array:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 import pinocchio as pin
 
+from pliant.controllers.axis_selection import Selection, selection_of
 from pliant.errors import ConfigError, SignalError, options
 from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
 from pliant.rigid_body import mass_matrix
@@ -19,12 +20,20 @@ from pliant.spatial import Array, all_finite, log3
 
 Compensation = Literal["none", "coriolis", "gravity+coriolis"]
 
+_LONGEST_PERIOD = 0.02  # s; after a pause the integral goes on from where it was
+_MOST = (20.0, 2.0)  # N and N·m, of the integral
+
 
 @dataclass(frozen=True)
 class OperationalSpaceState:
-    """The law has no memory; this is scratch space of the dynamics."""
+    """What the force integral has gathered; without one the law has no memory."""
 
     data: pin.Data
+    """scratch space of the dynamics"""
+    time: float
+    """s of the last step"""
+    integral: Array
+    """(6,) world axes, N and N·m"""
 
 
 @dataclass(frozen=True)
@@ -35,6 +44,10 @@ class OperationalSpace(Controller[OperationalSpaceState]):
 
     with Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹, J̄ = M⁻¹ Jᵀ Λ, and ẍ* = a_d + 2 ζ √k (v_d − J v) + k x̃. J has 6 rows where the
     reference has a rotation, otherwise 3. The posture is `Reference.posture`, or the robot's home.
+
+    With `force_integral` it presses, too: in the axes of `TaskReference.modes` (else those of its wrench) motion axes
+    keep ẍ*, force axes have 2 ζ √k (v_d − J v) alone and −(F_d + k_i ∫(F_d − F)) beside it as long as there is contact;
+    until then they move. Free axes drop out of J.
 
     Raises:
         RobotError: the robot lacks the frame.
@@ -53,12 +66,14 @@ class OperationalSpace(Controller[OperationalSpaceState]):
     """δ, kg^-1/2"""
     compensation: Compensation = "gravity+coriolis"
     """what the model adds"""
+    force_integral: float = 0.0
+    """k_i, 1/s; 0: it regulates no force"""
     label: str = "ee"
     """in channel names"""
 
     def __post_init__(self) -> None:
         self.robot.frame_id(self.frame)
-        for name in ("stiffness", "damping_ratio", "posture_stiffness", "singularity_damping"):
+        for name in ("stiffness", "damping_ratio", "posture_stiffness", "singularity_damping", "force_integral"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0.0):
                 raise ConfigError(f"{name} must be finite and not negative, got {value}")
@@ -68,8 +83,12 @@ class OperationalSpace(Controller[OperationalSpaceState]):
 
     @property
     def needs(self) -> Needs:
-        """A posture, for what the task leaves free."""
-        return Needs(posture=True)
+        """A posture, for what the task leaves free; the contact wrench where it presses."""
+        return Needs(posture=True, wrench=self.force_integral > 0.0)
+
+    @property
+    def regulates_force(self) -> bool:
+        return self.force_integral > 0.0
 
     @property
     def channels(self) -> Mapping[str, HasUnit]:
@@ -79,7 +98,7 @@ class OperationalSpace(Controller[OperationalSpaceState]):
     def init(self, estimate: Estimate) -> OperationalSpaceState:
         """Scratch space. Raises ShapeError for a robot with other joints."""
         self.robot.vector(estimate.q, "q")
-        return OperationalSpaceState(self.robot.model.createData())
+        return OperationalSpaceState(self.robot.model.createData(), estimate.time, np.zeros(6))
 
     def step(
         self, estimate: Estimate, reference: Reference, state: OperationalSpaceState
@@ -92,25 +111,62 @@ class OperationalSpace(Controller[OperationalSpaceState]):
         """
         q, v = self.robot.vector(estimate.q, "q"), self.robot.vector(estimate.v, "v")
         target = self._target(reference)
-        model, data = self.robot.model, state.data
+        model, data, last = self.robot.model, state.data, state
         pin.forwardKinematics(model, data, q, v, np.zeros_like(v))
         mass = mass_matrix(model, data, q)
-        J, x_tilde, drift = self._kinematics(q, target, data)
-        rows = J.shape[0]
-        x_dot_tilde = target.velocity[:rows] - J @ v
-        wanted = target.acceleration[:rows] + self.stiffness * x_tilde
-        wanted = wanted + 2.0 * self.damping_ratio * math.sqrt(self.stiffness) * x_dot_tilde - drift
+        J_world, x_tilde, drift = self._kinematics(q, target, data)
+        rows = J_world.shape[0]
+        x_dot_tilde = target.velocity[:rows] - J_world @ v
+        damped = 2.0 * self.damping_ratio * math.sqrt(self.stiffness) * x_dot_tilde - drift
+        wanted = target.acceleration[:rows] + self.stiffness * x_tilde + damped
+        selection = selection_of(
+            target, touches=estimate.contacts.get(self.frame, False), presses=self.force_integral > 0.0
+        )
+        pressed, state = np.zeros(rows), replace(state, time=estimate.time)
+        if selection is not None:
+            damped, wanted = selection.into @ damped, selection.into @ wanted
+            wanted = np.where(selection.force, damped, wanted)
+            pressed, state = self._pressed(selection, estimate, target, state, last)
+        J = J_world if selection is None else selection.into @ J_world
         M_inv_JT = np.linalg.solve(mass, J.T)
-        mobility = J @ M_inv_JT + self.singularity_damping**2 * np.eye(rows)
-        wrench = np.asarray(np.linalg.solve(mobility, wanted), dtype=np.float64)
+        mobility = J @ M_inv_JT + self.singularity_damping**2 * np.eye(len(J))
+        wrench = np.asarray(np.linalg.solve(mobility, wanted), dtype=np.float64) - pressed
         posture = mass @ self._posture(q, v, reference)
         torque = J.T @ (wrench - np.linalg.solve(mobility, M_inv_JT.T @ posture)) + posture
         torque = torque + self._compensation(q, v, data)
+        wrench = wrench if selection is None else selection.into.T @ wrench
         if not all_finite(torque):
             raise SignalError(f"the reference of frame {self.frame!r} must be finite, got {target}")
         sent = np.clip(torque, -self.robot.torque_limit, self.robot.torque_limit)
         channels: dict[str, float | Array] = {f"{self.label}/error": x_tilde, f"{self.label}/wrench": wrench}
         return Command(estimate.time, sent, torque - sent, channels), state
+
+    def _pressed(
+        self,
+        selection: Selection,
+        estimate: Estimate,
+        target: TaskReference,
+        state: OperationalSpaceState,
+        last: OperationalSpaceState,
+    ) -> tuple[Array, OperationalSpaceState]:
+        """F_d + k_i ∫(F_d − F) (k,) along the axes that press, and the state with the integral.
+
+        It starts anew where none presses, and holds without a usable signal.
+        """
+        rows = selection.into.shape[1]
+        if not selection.force.any():
+            return np.zeros(len(selection.force)), replace(state, integral=np.zeros(6))
+        felt = estimate.wrenches.get(self.frame)
+        integral = selection.into @ last.integral[:rows]
+        if felt is not None and np.isfinite(felt).all():
+            period = min(max(estimate.time - last.time, 0.0), _LONGEST_PERIOD)
+            integral = integral + self.force_integral * period * (selection.wrench - selection.into @ felt[:rows])
+        most = np.where(np.arange(rows) < 3, *_MOST)
+        integral = np.where(selection.force, integral, 0.0)
+        kept = np.zeros(6)
+        kept[:rows] = np.clip(selection.into.T @ integral, -most, most)
+        pressed = selection.wrench + selection.into @ kept[:rows]
+        return np.where(selection.force, pressed, 0.0), replace(state, integral=kept)
 
     def _target(self, reference: Reference) -> TaskReference:
         for task in reference.tasks:

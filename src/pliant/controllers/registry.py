@@ -81,11 +81,12 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
         ),
         ControllerEntry(
             "operational-space",
-            "Khatib's operational-space controller with a dynamically consistent posture",
+            "Khatib's operational-space controller with a dynamically consistent posture; presses along force axes",
             OperationalSpaceConfig(),
             build_operational_space,
             family="operational-space",
-            needs=lambda config: Needs(posture=True),
+            regulates_force=True,
+            needs=lambda config: Needs(posture=True, wrench=config.force_integral > 0.0),
             suggest=suggest_operational_space,
         ),
     )

@@ -10,6 +10,8 @@ from pliant.entries import Believed
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
+_INTEGRAL = 20.0  # 1/s
+_SLOWER = 0.1  # k_i times the loop's lateness, at most
 _FAST = 1e-3  # s; stiffness that a slower or later loop does not bear
 _SOFT = 3e-3  # s; lateness up to which a wrist bears the soft gains' rotation
 
@@ -63,6 +65,13 @@ def _translation(tuning: ImpedanceTuning) -> TranslationConfig:
 def suggest_operational_space(
     robot: Robot, config: OperationalSpaceConfig, believed: Believed
 ) -> OperationalSpaceConfig:
-    """The task's first frame; the model adds what the robot does not compensate by itself."""
+    """The task's first frame; the model adds what the robot does not compensate by itself.
+
+    Where a force is asked for k_i is a tenth of 1 / (period and delays), 20 /s at most: the force is regulated ten
+    times more slowly than the loop answers.
+    """
+    late = believed.period + believed.sensing_delay + believed.computation_delay
+    pressing = 0.0 if believed.presses is None else min(_INTEGRAL, _SLOWER / late)
     missing = {"none": "gravity+coriolis", "gravity": "coriolis", "gravity+coriolis": "none"}
-    return config.model_copy(update={"frame": believed.frames[0], "compensation": missing[believed.compensation]})
+    update = {"frame": believed.frames[0], "compensation": missing[believed.compensation], "force_integral": pressing}
+    return config.model_copy(update=update)

@@ -37,7 +37,7 @@ from pliant.studies.task.listed import (
     stages_of,
     tracks_of,
 )
-from pliant.studies.task.pressed import pressed_planes
+from pliant.studies.task.pressed import asked_of, pressed_planes
 from pliant.studies.task.sensor import known_load, sensor_of
 from pliant.studies.task.tracked import tracked_motion
 from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
@@ -78,7 +78,7 @@ def listed(case: TaskCase) -> Listed:
     start = robot.home if case.start is None else robot.vector(np.radians(case.start), "start")
     stages = stages_of(case, robot, robot.placement(start, frame_of(case))[1])
     _refuse(case, stages)
-    pressing = any(np.any(stage.task.wrench) for stage in stages)
+    pressing = any(np.any(stage.task.wrench) or "force" in asked_of(stage.task) for stage in stages)
     oriented = all(stage.task.rotation is not None for stage in stages)
     surface = pressed_planes(stages, changes_of(case))
     believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None, surface)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pliant.axis_modes import Mode
 from pliant.references.force_axes import task_axes
 from pliant.references.stages import Stage, StageChange
 from pliant.signals import TaskReference
@@ -40,6 +41,11 @@ def pressed_along(task: TaskReference) -> Array:
         return task.wrench[:3]
     asked = [axis for axis in range(3) if task.modes.modes[axis] == "force"]
     return task.modes.rotation[:, asked[-1]] if asked else np.zeros(3)
+
+
+def asked_of(task: TaskReference) -> tuple[Mode, ...]:
+    """(6,) modes of a task; empty where it has none."""
+    return () if task.modes is None else task.modes.modes
 
 
 def _frame(task: TaskReference) -> Array:
