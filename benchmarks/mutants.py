@@ -8,8 +8,9 @@
 and draws as many from each folder with a fixed seed. `run` makes one change at a time in a copy of the tree and runs
 the files of tests that own the changed module, then, where none fails, those that import it or its folder; with
 `--suite`, survivors meet all the others. It writes what it finds into the list after each, and goes on where it was
-stopped. A test that does not end within 120 s has noticed. A change that means the same as before is marked by
-hand: `verdict = "equivalent"` with a reason.
+stopped. The list says at which commit it was drawn: a line that a later one changed is judged there. A test that does
+not end within 120 s has noticed. A change that means the same as before is marked by hand: `verdict = "equivalent"`
+with a reason.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ class Mutant:
 
     file: str
     """from the tree's root"""
-    line: int
+    function: str
+    """that it is in, `Class.method`; empty: none"""
     text: str
     """of the line: it is found by it when lines move"""
     kind: str
@@ -146,7 +148,7 @@ def places(path: Path) -> Iterator[Mutant]:
         name = str(path.relative_to(ROOT))
         yield Mutant(
             name,
-            node.lineno,
+            function_at(text, node.lineno),
             line.decode().strip(),
             kind,
             before,
@@ -154,6 +156,20 @@ def places(path: Path) -> Iterator[Mutant]:
             node.col_offset - shift,
             (node.end_col_offset or 0) - shift,
         )
+
+
+def function_at(text: str, line: int) -> str:
+    """Name of the innermost function or class that a line of a file is in, `Class.method`; empty: none."""
+    names: list[str] = []
+    inside: list[ast.AST] = [ast.parse(text)]
+    while inside:
+        node = inside.pop()
+        for child in ast.iter_child_nodes(node):
+            if child.__dict__.get("lineno", 0) <= line <= (child.__dict__.get("end_lineno") or 0):
+                if isinstance(child, ast.FunctionDef | ast.ClassDef):
+                    names.append(child.name)
+                inside.append(child)
+    return ".".join(names)
 
 
 def draw(seed: int, per_folder: int) -> list[Mutant]:
@@ -172,7 +188,7 @@ def draw(seed: int, per_folder: int) -> list[Mutant]:
         while len(chosen) < per_folder and any(by_kind.values()):
             kind = rng.choice([kind for kind in KINDS if by_kind[kind]])
             mutant = by_kind[kind].pop()
-            if all((mutant.file, mutant.line) != (m.file, m.line) for m in chosen):
+            if all((mutant.file, mutant.function, mutant.text) != (m.file, m.function, m.text) for m in chosen):
                 chosen.append(mutant)
         drawn += chosen
     return drawn
@@ -201,9 +217,10 @@ def mutated(mutant: Mutant, text: str) -> str:
     """A file's text with the change. Raises SystemExit if the line is no longer there."""
     lines = text.splitlines(keepends=True)
     same = [index for index, line in enumerate(lines) if line.strip() == mutant.text]
+    same.sort(key=lambda index: function_at(text, index + 1) != mutant.function)  # its own function first
     if not same:
         raise SystemExit(f"{mutant.file} has no line {mutant.text!r} any more; draw the list again")
-    at = min(same, key=lambda index: abs(index + 1 - mutant.line))
+    at = same[0]
     line, shift = lines[at].encode(), len(lines[at]) - len(lines[at].lstrip())
     start, end = mutant.start + shift, mutant.end + shift
     if line[start:end].decode() != mutant.before:
@@ -259,7 +276,7 @@ def run(path: Path, limit: float, folders: list[str], suite: bool) -> None:
             mutant.verdict, mutant.by = ("survived", "") if by is None else ("killed", by.split("[")[0])
             write(path, mutants)
             print(
-                f"{mutant.verdict} {mutant.file}:{mutant.line} {mutant.before} → {mutant.after}: {mutant.by}",
+                f"{mutant.verdict} {mutant.file}:{mutant.function} {mutant.before} → {mutant.after}: {mutant.by}",
                 flush=True,
             )
 
@@ -274,13 +291,14 @@ def count(path: Path) -> int:
 
 def read(path: Path) -> list[Mutant]:
     """The list."""
-    return [Mutant(**entry) for entry in json.loads(path.read_text())]
+    return [Mutant(**entry) for entry in json.loads(path.read_text())["mutants"]]
 
 
-def write(path: Path, mutants: list[Mutant]) -> None:
-    """The list, an entry a line."""
+def write(path: Path, mutants: list[Mutant], commit: str | None = None) -> None:
+    """The list, an entry a line. Args: commit: at which it was drawn; None: as the file says."""
+    drawn = json.dumps(json.loads(path.read_text())["drawn at"] if commit is None else commit)
     lines = ",\n".join(json.dumps(asdict(mutant), ensure_ascii=False) for mutant in mutants)
-    path.write_text(f"[\n{lines}\n]\n")
+    path.write_text(f'{{"drawn at": {drawn}, "mutants": [\n{lines}\n]}}\n')
 
 
 def main() -> int:
@@ -295,7 +313,8 @@ def main() -> int:
     parser.add_argument("--suite", action="store_true", help="survivors, by the files of tests that do not own them")
     asked = parser.parse_args()
     if asked.what == "draw":
-        write(asked.list, draw(asked.seed, asked.per_folder))
+        commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True)
+        write(asked.list, draw(asked.seed, asked.per_folder), commit.stdout.strip())
     elif asked.what == "run":
         run(asked.list, asked.limit, asked.folders.split(","), asked.suite)
     return count(asked.list)
