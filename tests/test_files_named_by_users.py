@@ -65,6 +65,32 @@ def test_odd_values_are_one_short_sentence(text: str) -> None:
     assert len(str(caught.value)) < 500
 
 
+@pytest.mark.parametrize(
+    ("text", "keys"),
+    [
+        ("control.mine.py:Mine.gain=1", ["control", "mine.py:Mine", "gain"]),
+        ('control."../a.b/mine.py:Mine".gain=1', ["control", "../a.b/mine.py:Mine", "gain"]),
+        ("control.pypi.gain=1", ["control", "pypi", "gain"]),
+        (" a . b =1", ["a", "b"]),
+    ],
+)
+def test_the_name_of_a_file_is_one_part_of_a_key(text: str, keys: list[str]) -> None:
+    found, got = parse_assignments([text]), []
+    while isinstance(found, dict):
+        ((key, found),) = found.items()
+        got.append(key)
+    assert (got, found) == (keys, 1)
+
+
+def test_a_table_of_a_controller_that_there_is_not_is_refused(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["run", "wipe", "--controller", "haptic", "--show-config", "--set"]
+    said = _fails([*arguments, "control.haptik.exploration.gain=3"], monkeypatch, capsys)
+    assert "no controller 'haptik'" in said
+    assert "did you mean 'haptic'" in said
+
+
 def test_a_folder_of_a_user_who_does_not_exist(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

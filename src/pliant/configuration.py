@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -75,7 +76,8 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
-    """Turns `plant.period=0.001` into nested dictionaries; values are TOML, bare words are strings.
+    """Turns `plant.period=0.001` into nested dictionaries; values are TOML, bare words are strings. A part of a key
+    that has dots of its own stands in double quotes; `my_file.py:MyController` needs none.
 
     Raises:
         ConfigError: no `=`, an empty key, or the same key twice.
@@ -83,7 +85,7 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
     tree: dict[str, Any] = {}
     for text in assignments:
         key, equals, value = text.partition("=")
-        parts = [part.strip() for part in key.split(".")]
+        parts = _parts(key)
         if not equals or not all(parts):
             raise ConfigError(f"an override is written key=value, for example plant.period=0.001, got {_shown(text)}")
         if len(parts) > _MOST_DEPTH:
@@ -97,6 +99,12 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
             raise ConfigError(f"override {key.strip()!r} is given twice")
         node[parts[-1]] = _toml_value(value.strip())
     return tree
+
+
+def _parts(key: str) -> list[str]:
+    """Of a dotted key: dots within double quotes, and the one of `file.py:Class`, do not part it."""
+    outside = r'(?=(?:[^"]*"[^"]*")*[^"]*$)' if '"' in key else ""  # of quotes: an even number of them follows
+    return [part.strip().strip('"') for part in re.split(rf"\.(?!py:){outside}", key)]
 
 
 def merged(config: C, changes: Mapping[str, Any]) -> C:

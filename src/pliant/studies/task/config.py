@@ -64,7 +64,10 @@ class TaskCase(TaskParts, CaseConfig):
 
     def controller_parameters(self, robot: Robot, believed: Believed) -> ControllerConfig:
         """The controller's parameters: its defaults, weights tuned for a late or a prompt loop, what suits the task,
-        then `control`."""
+        then `control`. Raises ConfigError: `control` names a controller that there is not."""
+        for name in self.control:
+            if ":" not in name:  # one of a file is looked for when it is chosen
+                find_controller(name)
         entry = self.entry
         late = self.timing.sensing_delay + self.timing.computation_delay > 0.0
         base = merged(entry.default, PRESETS["tuned" if late else "perfect"].get(self.controller, {}))
