@@ -113,7 +113,7 @@ def test_the_same_run_twice_is_the_same() -> None:
 
 
 def test_wrong_times_and_controllers_are_refused() -> None:
-    with pytest.raises(ConfigError, match="reach, touch, pressed and circle must increase"):
+    with pytest.raises(ConfigError, match="reach, touch, pressed, circle and stop must increase"):
         STUDY.build(_config(task={"reach": 1.0, "touch": 0.5}))
     with pytest.raises(ConfigError, match="did you mean 'classical-mpc'"):
         STUDY.build(_config(controller="clasical-mpc"))
@@ -140,7 +140,7 @@ def test_what_nobody_knows_of_the_tool_is_added_to_it() -> None:
 
 
 def test_times_that_do_not_increase_are_refused() -> None:
-    with pytest.raises(ConfigError, match="reach, touch, pressed and circle must increase"):
+    with pytest.raises(ConfigError, match="reach, touch, pressed, circle and stop must increase"):
         STUDY.build(_config(task={"reach": 1.0, "touch": 1.0}))
 
 

@@ -1,6 +1,7 @@
 """What the robot believes about itself and about its contacts."""
 
 from pliant.estimation.carried_mass import CarriedMass
+from pliant.estimation.complementary_force import ComplementaryForce
 from pliant.estimation.direct import DirectEstimator
 from pliant.estimation.environment import EnvironmentEstimator
 from pliant.estimation.environment_fit import EnvironmentFit, FitConfig
@@ -10,6 +11,7 @@ from pliant.estimation.filters import Butterworth, FirstOrder, LowPass
 from pliant.estimation.identification_poses import identification_poses
 from pliant.estimation.joint_acceleration import JointAcceleration
 from pliant.estimation.joint_state import JointStateFilter
+from pliant.estimation.modelled_torque import ModelledTorqueEstimator
 from pliant.estimation.momentum_observer import MomentumObserver
 from pliant.estimation.start_hints import start_hints
 from pliant.estimation.surface_fit import SurfaceEstimator, SurfaceFitConfig
@@ -20,6 +22,7 @@ from pliant.estimation.wrench import TouchThresholds, WrenchEstimator
 __all__ = [
     "Butterworth",
     "CarriedMass",
+    "ComplementaryForce",
     "DirectEstimator",
     "EnvironmentEstimator",
     "EnvironmentFit",
@@ -30,6 +33,7 @@ __all__ = [
     "JointAcceleration",
     "JointStateFilter",
     "LowPass",
+    "ModelledTorqueEstimator",
     "MomentumObserver",
     "SurfaceEstimator",
     "SurfaceFitConfig",

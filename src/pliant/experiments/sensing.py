@@ -21,6 +21,8 @@ def sensing_of(
         felt=felt,
         velocity_gain=velocity_gain,
         wrench_cutoff=keys.wrench_cutoff,
+        wrench_stiffness=keys.wrench_stiffness,
+        torque=keys.torque,
         joint_memory=joint_memory if keys.joint_memory is None else keys.joint_memory,
         observer_gain=keys.observer_gain,
         acceleration_cutoff=keys.acceleration_cutoff,

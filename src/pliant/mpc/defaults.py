@@ -89,6 +89,13 @@ class OffsetFreeMpc(ForceFeedbackMpc):
     )
 
 
+class ViscoElasticMpc(ForceFeedbackMpc):
+    """[FFMPC] section V-B: force feedback's model, with the force that its spring and damper give for q and v. The
+    stiffness is that of the paper's table: here it decides the force."""
+
+    contact: Contact = Contact(stiffness=(1e4,), damping=(1e2,), integrator="exponential")
+
+
 class ClassicalMpc(MpcConfig):
     """Classical, [FFMPC] section III-C: rigid contact, the measured force is not used."""
 

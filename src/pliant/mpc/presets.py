@@ -59,5 +59,12 @@ _TUNED: Mapping[str, Mapping[str, Any]] = {
 }
 """rounded from `pliant study polishing --tune CONTROLLER --trials 16`, the same search for each"""
 
-PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {"tuned": _TUNED, "perfect": _PERFECT, "paper": {}}
+_NAIVE = {key: value for key, value in _TUNED["force-feedback-mpc"].items() if key != "contact"}
+"""force feedback's weights, with the table's own stiffness"""
+
+PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
+    "tuned": {**_TUNED, "visco-elastic-mpc": _NAIVE},
+    "perfect": _PERFECT,
+    "paper": {},
+}
 """preset → controller → changes to its defaults"""

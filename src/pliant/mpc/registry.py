@@ -10,10 +10,12 @@ import pinocchio as pin
 
 from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError
+from pliant.interfaces import Controller, Needs
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.controller import MpcController
 from pliant.mpc.costs import Term
-from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, OffsetFreeMpc, TorqueFeedbackMpc
+from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, OffsetFreeMpc, TorqueFeedbackMpc, ViscoElasticMpc
+from pliant.mpc.modelled_force import ModelledForceMpc
 from pliant.mpc.needs import needs_of, suggest_mpc
 from pliant.robot import Robot
 
@@ -32,6 +34,11 @@ def build_mpc(robot: Robot, config: MpcConfig, period: float) -> MpcController:
     return MpcController(robot if config.gravity else _weightless(robot), config, period)
 
 
+def build_modelled_force(robot: Robot, config: MpcConfig, period: float) -> ModelledForceMpc:
+    """The same with a modelled contact force instead of the measured one."""
+    return ModelledForceMpc(robot if config.gravity else _weightless(robot), config, period)
+
+
 def _weightless(robot: Robot) -> Robot:
     """The same robot without gravity: what a controller sees of one that compensates its weight by itself."""
     model = robot.model.copy()
@@ -44,17 +51,19 @@ def _entry(
     summary: str,
     default: MpcConfig,
     advise: Callable[[Robot, MpcConfig, float], tuple[str, ...]],
+    build: Callable[[Robot, MpcConfig, float], Controller[Any]] = build_mpc,
+    needs: Callable[[MpcConfig], Needs] = needs_of,
 ) -> ControllerEntry[MpcConfig]:
     return ControllerEntry(
         name,
         summary,
         default,
-        build_mpc,
+        build,
         advise,
         family="mpc",
         guarantees="finite torques within the limits; without a solution: gravity and damping",
         regulates_force=True,
-        needs=needs_of,
+        needs=needs,
         suggest=suggest_mpc,
     )
 
@@ -93,6 +102,14 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
             "force feedback with disturbance observer, prediction over delays and force integral",
             OffsetFreeMpc(),
             advise_mpc,
+        ),
+        _entry(
+            "visco-elastic-mpc",
+            "predictive, visco-elastic contact, the force that it predicts from follows from position and velocity",
+            ViscoElasticMpc(),
+            advise_mpc,
+            build_modelled_force,
+            lambda config: replace(needs_of(config), wrench=False),
         ),
         _entry(
             "torque-feedback-mpc",

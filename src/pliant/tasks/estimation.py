@@ -33,6 +33,18 @@ class Estimation(Config):
     wrench_cutoff: float | None = quantity(
         None, "Hz", "of a Butterworth filter of the contact wrench; none: unfiltered", gt=0.0, le=1e5
     )
+    wrench_stiffness: float | None = quantity(
+        None,
+        "N/m",
+        "believed stiffness with which the motion fills in what that filter is late by; none: the filter alone",
+        gt=0.0,
+        le=1e8,
+    )
+    torque: Literal["sensor", "model"] = Field(
+        default="sensor",
+        description="joint torques as the joints' sensors say, or RNEA(q, v, v̇) − τ_ext of the force sensor"
+        " ([FFMPC] eq. 37)",
+    )
     acceleration_cutoff: float = quantity(
         JointAcceleration.cutoff,
         "Hz",

@@ -10,12 +10,14 @@ from pliant.entries import Believed
 from pliant.estimation import (
     Butterworth,
     CarriedMass,
+    ComplementaryForce,
     DirectEstimator,
     EnvironmentEstimator,
     FilteredEstimator,
     FitConfig,
     JointAcceleration,
     JointStateFilter,
+    ModelledTorqueEstimator,
     MomentumObserver,
     SurfaceEstimator,
     SurfaceFitConfig,
@@ -25,6 +27,7 @@ from pliant.estimation import (
 from pliant.estimation.momentum_observer import GAIN
 from pliant.interfaces import Estimator, Needs
 from pliant.robot import Robot
+from pliant.surfaces import PlaneSurface
 
 _JOINT_MEMORY = 0.3  # s
 _SLIDING = 0.02  # m/s; faster than that, an unknown tilt looks like a soft table
@@ -45,6 +48,10 @@ class SensorFilters:
     """share of a new sample in the joint velocity; 1 filters nothing"""
     wrench_cutoff: float | None = None
     """Hz, of a Butterworth filter of contact wrenches; None: unfiltered"""
+    wrench_stiffness: float | None = None
+    """N/m, by which the motion fills in what that filter is late by; None: the filter alone"""
+    torque: Literal["sensor", "model"] = "sensor"
+    """where the joint torques come from"""
     joint_memory: float | None = None
     """s, of the joint state filter; 0: none; None: 0.3 s for controllers that want calm positions"""
     observer_gain: float = GAIN
@@ -82,8 +89,7 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Senso
         if sensing.felt
         else DirectEstimator(gain)
     )
-    if sensing.wrench_cutoff is not None:
-        felt = FilteredEstimator(felt, wrench=Butterworth(sensing.wrench_cutoff, period))
+    felt = _filtered(felt, robot, believed, sensing)
     memory = sensing.joint_memory
     if memory is None:
         memory = _JOINT_MEMORY if needs.calm else 0.0
@@ -106,3 +112,17 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Senso
         compensation=believed.compensation,
         late_readings=round(believed.sensing_delay / period),
     )
+
+
+def _filtered(felt: Estimator[Any], robot: Robot, believed: Believed, sensing: SensorFilters) -> Estimator[Any]:
+    """The wrench behind its filter, and the joint torque from where it is to come."""
+    frame = believed.presses
+    if sensing.torque == "model" and frame is not None:  # before the filter: it would make τ_ext late
+        felt = ModelledTorqueEstimator(felt, robot, frame, believed.period)
+    if sensing.wrench_cutoff is None:
+        return felt
+    filter_ = Butterworth(sensing.wrench_cutoff, believed.period)
+    if sensing.wrench_stiffness is None or frame is None:
+        return FilteredEstimator(felt, wrench=filter_)
+    surface = believed.surface or PlaneSurface.facing((0.0, 0.0, 1.0))
+    return ComplementaryForce(felt, robot, frame, filter_, sensing.wrench_stiffness, surface)

@@ -15,7 +15,7 @@ def _sweep(name: str, rows: list[Row], *figures: object) -> Case[PolishingConfig
     return Case(case_config(name, **imperfect()), rows, SWEPT, figures=[*figures, ROWS])  # pyright: ignore
 
 
-def _force_weight(controller: str, factor: float) -> Row:
+def force_weight(controller: str, factor: float) -> Row:
     """The controller's own force weights, all times a factor."""
 
     def changes(base: PolishingConfig) -> Changes:
@@ -38,6 +38,16 @@ def _model(stiffness: float, damping: float) -> Row:
     return varied("force-feedback-mpc", f"K = {stiffness:g}, B = {damping:g}", {"control": {"contact": contact}})
 
 
+def _rippled(controller: str) -> list[Row]:
+    """The paper's remedy ([FFMPC] VIII-C.1) at several cutoffs, alone and with its lag filled in by the motion."""
+    rows = [varied(controller, "no ripple", {}), varied(controller, "ripple", _RIPPLE)]
+    for stiffness, how in ((None, "Butterworth"), (1e4, "without lag")):
+        for cutoff in (10.0, 15.0, 20.0, 30.0, 40.0, 60.0):
+            filtered = {"wrench_cutoff": cutoff, "wrench_stiffness": stiffness}
+            rows.append(varied(controller, f"ripple, {how} {cutoff:g} Hz", {**_RIPPLE, "estimation": filtered}))
+    return rows
+
+
 _NODES = [varied(name, f"N = {n}", {"control": {"horizon": n}}, float(n)) for name in ALL for n in (1, 3, 5, 10)]
 _STEPS = [
     varied(name, f"N = {n} over 15 ms", {"control": {"horizon": n, "dt": _LENGTH / n}})
@@ -53,7 +63,7 @@ SWEEP_CASES: tuple[Case[PolishingConfig], ...] = (
     ),
     Case(
         case_config("force-weight", **imperfect()),
-        [_force_weight(name, factor) for name in ALL for factor in (0.01, 0.1, 1.0, 10.0)],
+        [force_weight(name, factor) for name in ALL for factor in (0.01, 0.1, 1.0, 10.0)],
         SWEPT,
         figures=[against("factor of the force weight", log_x=True)],
     ),
@@ -67,16 +77,5 @@ SWEEP_CASES: tuple[Case[PolishingConfig], ...] = (
         "anchor",
         [_anchor(name, error, found) for name in ALL for error in (-5e-3, 0.0, 5e-3) for found in (False, True)],
     ),
-    _sweep(
-        "ripple",
-        [
-            row
-            for name in ("force-feedback-mpc", BEST)
-            for row in (
-                varied(name, "no ripple", {}),
-                varied(name, "ripple", _RIPPLE),
-                varied(name, "ripple, Butterworth 15 Hz", {**_RIPPLE, "estimation": {"wrench_cutoff": 15.0}}),
-            )
-        ],
-    ),
+    _sweep("ripple", [row for name in ("force-feedback-mpc", BEST) for row in _rippled(name)]),
 )

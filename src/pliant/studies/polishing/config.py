@@ -15,6 +15,7 @@ from pliant.configuration import merged
 from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
+from pliant.mpc.config import MpcConfig
 from pliant.mpc.presets import PRESETS
 from pliant.quantity import quantity
 from pliant.robot import Robot, Tool
@@ -113,7 +114,7 @@ class PolishingConfig(CaseConfig):
             presses=FRAME,
             sensing_delay=self.imperfections.sensing.delay,
             computation_delay=max(self.imperfections.computation_delay + self.delay_error, 0.0),
-            phases=PHASES,
+            phases=PHASES if self.task.stop is None else {**PHASES, "stop": True},
         )
 
     def robot_model(self, unknown_mass: float = 0.0) -> Robot:
@@ -130,4 +131,7 @@ class PolishingConfig(CaseConfig):
         `control`."""
         entry = self.entry
         base = merged(entry.default, PRESETS[self.preset].get(self.controller, {}))
+        if self.task.stop is not None and isinstance(base, MpcConfig) and "circle" in base.phases:
+            # the tool rests by the costs that drew the circle
+            base = merged(base, {"phases": {"stop": base.phases["circle"].model_dump()}})
         return parameters_for(entry, self.robot_model(), self.believed, self.control, base)

@@ -1,4 +1,4 @@
-"""References of the polishing task, as phases: reach, track, ramp, contact, circle."""
+"""References of the polishing task, as phases: reach, track, ramp, contact, circle, stop."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import numpy as np
 from pliant.errors import ConfigError
 from pliant.interfaces import Lookahead
 from pliant.references.phases import PhasedSource, TaskPhase
+from pliant.references.trajectories.excerpt import Excerpt
 from pliant.references.trajectories.shapes import circle
-from pliant.references.trajectories.trajectory import Hold
+from pliant.references.trajectories.trajectory import Blend, Hold
 from pliant.references.trajectories.waypoints import Waypoints, wrench_steps
 from pliant.robot import Robot
 from pliant.spatial import Array, rpy
@@ -22,15 +23,17 @@ TURNED_DOWN = rpy(math.pi, 0.0, math.pi)
 
 
 def polishing_source(config: PolishingConfig, robot: Robot, lookahead: Lookahead | None) -> PhasedSource:
-    """References of the task: reach, track (descend), ramp, contact (hold), circle or force steps.
+    """References of the task: reach, track (descend), ramp, contact (hold), circle or force steps, and the stop.
 
     Raises:
-        ConfigError: times that do not increase.
+        ConfigError: times that do not increase, or a stop of something else than a circle.
     """
     task = config.task
-    ends = [task.reach, task.touch, task.pressed, task.circle]
+    ends = [task.reach, task.touch, task.pressed, task.circle, *([] if task.stop is None else [task.stop])]
+    if task.stop is not None and task.pattern != "circle":
+        raise ConfigError(f"task.stop ends a circle; leave it out with task.pattern = {task.pattern!r}")
     if any(late <= early for early, late in pairwise([0.0, *ends])):
-        raise ConfigError(f"reach, touch, pressed and circle must increase, got {ends}")
+        raise ConfigError(f"reach, touch, pressed, circle and stop must increase, got {ends}")
     surface = touching_point(config) + np.array([0.0, 0.0, config.table.height_error])
     start, above = surface + np.array([0.0, 0.0, task.start]), surface + np.array([0.0, 0.0, task.above])
     descent = task.touch - task.reach
@@ -45,20 +48,31 @@ def polishing_source(config: PolishingConfig, robot: Robot, lookahead: Lookahead
         TaskPhase("track", Waypoints(times, down), duration=descent, ends_on_contact=task.found),
         TaskPhase("ramp", at_touch, "touch", rising, task.pressed - task.touch, touches=True),
         TaskPhase("contact", at_touch, "touch", pressing, task.circle - task.pressed, touches=True),
-        _last_phase(config),
+        *_last_phases(config),
     )
     return PhasedSource(robot, FRAME, phases, TURNED_DOWN, lookahead, robot.home)
 
 
-def _last_phase(config: PolishingConfig) -> TaskPhase:
+def _last_phases(config: PolishingConfig) -> tuple[TaskPhase, ...]:
     task = config.task
     if task.pattern == "circle":
-        turn = circle(np.zeros(3), task.radius, task.speed).eased(task.ease)
-        return TaskPhase("circle", turn, "touch", wrench_steps([0.0], [task.force]), touches=True)
+        turn, pressing = (
+            circle(np.zeros(3), task.radius, task.speed).eased(task.ease),
+            wrench_steps([0.0], [task.force]),
+        )
+        if task.stop is None:
+            return (TaskPhase("circle", turn, "touch", pressing, touches=True),)
+        length = task.stop - task.circle
+        onward = Excerpt(turn, length, length + task.ease)
+        resting = Blend(onward, Hold(turn.at(length + 0.5 * task.ease).value), task.ease)
+        return (
+            TaskPhase("circle", turn, "touch", pressing, length, touches=True),
+            TaskPhase("stop", resting, "touch", pressing, touches=True),
+        )
     count = max(1, math.ceil((config.duration - task.circle) / task.half_period))
     levels = [task.low if index % 2 == 0 else task.force for index in range(count)]
     steps = wrench_steps([task.half_period * index for index in range(count)], levels)
-    return TaskPhase("circle", Hold(np.zeros(3)), "touch", steps, touches=True)
+    return (TaskPhase("circle", Hold(np.zeros(3)), "touch", steps, touches=True),)
 
 
 def touching_point(config: PolishingConfig) -> Array:

@@ -41,6 +41,9 @@ class Work(Config):
     radius: float = quantity(0.07, "m", "of the circle", gt=0.0, le=10.0)
     speed: float = quantity(3.0, "rad/s", "of the circle", gt=0.0, le=100.0)
     ease: float = quantity(0.5, "s", "time in which the circle starts from rest", ge=1e-3, le=1e4)
+    stop: float | None = quantity(
+        None, "s", "when the circle has ended and the tool rests, pressed on; none: it goes on", gt=0.0, le=1e4
+    )
     found: bool = Field(default=False, description="contact begins when it is felt, not by the timetable")
 
 

@@ -1,0 +1,39 @@
+"""The rows of one case as a table of a page: a line a row, a column a metric, the paper's numbers in brackets.
+
+Run: pliant study polishing --case naive --seeds 1 --out naive; python benchmarks/docs_rows.py naive "E_λ,E_P,λ_max"
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from pliant.telemetry.summary import CaseSummary, Metric, Summary
+from pliant.telemetry.table import value_text
+
+
+def cell(row: CaseSummary, name: str) -> str:
+    """The value with its deviation, and the paper's number."""
+    found = next((metric for metric in row.metrics if metric.name == name), None)
+    if found is None:
+        return "–"
+    return value_text(found) + ("" if found.paper is None else f" ({found.paper:g})")
+
+
+def rows(summary: Summary, names: list[str]) -> str:
+    """Markdown."""
+    units: dict[str, Metric] = {}
+    for row in summary.cases:
+        for metric in row.metrics:
+            units.setdefault(metric.name, metric)
+    heads = [f"{name}, {units[name].unit}" if name in units and units[name].unit != "1" else name for name in names]
+    lines = [f"| controller | row | {' | '.join(heads)} | failed |", f"|---|---|{'---:|' * len(names)}---:|"]
+    for row in summary.cases:
+        cells = [cell(row, name) for name in names]
+        failed = f"{len(row.failures)} of {row.runs}"
+        lines.append(f"| `{row.controller}` | {row.variant or '–'} | {' | '.join(cells)} | {failed} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(rows(Summary.read(Path(sys.argv[1])), sys.argv[2].split(",")))
