@@ -7,6 +7,8 @@ from pathlib import Path
 
 from rich.console import Console
 
+from pliant.errors import ConfigError
+from pliant.experiments.animation import animate
 from pliant.telemetry.describe import describe
 from pliant.telemetry.lerobot import ACTION, export_lerobot
 from pliant.telemetry.log import Log
@@ -39,3 +41,17 @@ def export_command(console: Console, files: Sequence[Path], folder: Path, fps: i
     logs = [Log.open(file) for file in files]
     export_lerobot(logs, folder, fps=fps, action=channels)
     console.print(f"LeRobot data set of {len(logs)} episodes  {folder}", markup=False, highlight=False, soft_wrap=True)
+
+
+def animate_command(console: Console, files: Sequence[Path], out: Path | None) -> None:
+    """Makes an animated picture of a log. Args: out: .webp or .gif; None: beside the log.
+
+    Raises:
+        ConfigError: more than one log, or another ending.
+        OutputError: a file cannot be read or written, or there is nothing to draw.
+    """
+    if len(files) != 1:
+        raise ConfigError(f"pliant log animate takes one log, got {len(files)}")
+    made = animate(Log.open(files[0]), out or files[0].with_suffix(".webp"))
+    size = made.stat().st_size / 1e6
+    console.print(f"picture  {made}  ({size:.2f} MB)", markup=False, highlight=False, soft_wrap=True)

@@ -17,7 +17,8 @@ from pliant.errors import ConfigError
 @guarded
 def log(
     words: Annotated[
-        list[str], typer.Argument(metavar="[export] FILE.mcap…", help="A log that pliant wrote; of an export several.")
+        list[str],
+        typer.Argument(metavar="[export|animate] FILE.mcap…", help="A log that pliant wrote; of an export several."),
     ],
     plot: Annotated[bool, typer.Option("--plot", help="Draws the log into PNG files.")] = False,
     lerobot: Annotated[
@@ -29,14 +30,17 @@ def log(
     ] = None,
     out: Out = None,
 ) -> None:
-    """Says what is in a log: channels, units, rates, metrics; or exports logs."""
-    from pliant.cli.log import export_command, log_command
+    """Says what is in a log: channels, units, rates, metrics; exports logs; animates one (--out FILE.webp)."""
+    from pliant.cli.log import animate_command, export_command, log_command
 
     given = [name for name, value in (("--lerobot", lerobot), ("--fps", fps), ("--action", action)) if value]
     if words[0] == "export":
         if lerobot is None or plot or out is not None:
             raise ConfigError("write pliant log export FILE.mcap… --lerobot DIR [--fps N] [--action CHANNEL,…]")
         export_command(program.out, [Path(word) for word in words[1:]], lerobot, fps or 50, action)
+        return
+    if words[0] == "animate" and not given and not plot:
+        animate_command(program.out, [Path(word) for word in words[1:]], out)
         return
     if given or len(words) > 1:
         raise ConfigError(f"pliant log takes one file; {', '.join(given) or words[1]} belongs to pliant log export")

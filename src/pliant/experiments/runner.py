@@ -11,16 +11,14 @@ from typing import Any
 
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
+from pliant.experiments.drawn import drawn_scene
 from pliant.experiments.own_metrics import own_metrics
 from pliant.experiments.verdict import StartNotes, physical_verdict
 from pliant.interfaces import Observer
-from pliant.mujoco_model import spec_from_robot
 from pliant.signals import Tick
-from pliant.simulation import MujocoPlant
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import Log
 from pliant.telemetry.recorder import Recorder
-from pliant.telemetry.scene_topics import DrawnScene
 from pliant.telemetry.summary import Metric
 
 Progress = Callable[[float], None]
@@ -91,16 +89,6 @@ def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> R
         torque_limits=tuple(experiment.robot.torque_limit),
         config=config.model_dump(mode="json"),
     )
-
-
-def drawn_scene(experiment: Experiment) -> DrawnScene:
-    """What 3-D views show of a run: robot and scene of a simulation, of any other plant the robot alone."""
-    plant: Any = experiment.plant
-    while not isinstance(plant, MujocoPlant) and hasattr(plant, "inner"):
-        plant = plant.inner
-    robot = experiment.robot
-    model = plant.model if isinstance(plant, MujocoPlant) else spec_from_robot(robot).compile()
-    return DrawnScene(model, robot.n)
 
 
 def file_stem(config: CaseConfig) -> str:

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from pliant.configuration import validated
-from pliant.errors import OutputError, PliantError, RobotError
-from pliant.experiments.registry import get_study, study_names
+from pliant.errors import OutputError
+from pliant.experiments.drawn import drawn_log
 from pliant.live.link.messages import Picture
-from pliant.live.loop.steered_plant import physics_of
 from pliant.live.page.curves import Columns
-from pliant.mujoco_model import spec_from_robot
-from pliant.robot import Robot
-from pliant.simulation import Scene
 from pliant.spatial import Array
 from pliant.telemetry.log import Log
 from pliant.visual_shapes import Poser, looks_of
@@ -39,7 +32,8 @@ class LoggedScene:
                 f"{log.source} holds no motion to replay: it has no channel 'measurement/q' or 'command/torque'"
             )
         self.log = log
-        self.model, robot, self.scene = _model(log)
+        drawn, robot, self.scene = drawn_log(log)
+        self.model = drawn.model
         self.robot = robot
         self.looks = looks_of(self.model, robot.n)
         self.columns, self.rows = Columns.of_log(log, robot.joint_names)
@@ -108,24 +102,3 @@ class LoggedScene:
             if value is not None and np.any(value[:3]):
                 return value[:3]
         return np.zeros(3)
-
-
-def _model(log: Log) -> tuple[Any, Robot, Scene | None]:
-    """MuJoCo model, robot and scene of the run; without its study, the robot alone."""
-    info = log.info
-    if info.study in study_names():
-        study = get_study(info.study)
-        try:
-            built = study.build(validated(study.config_type, info.config))
-        except PliantError:
-            built = None  # a log of another version: its configuration is not today's
-        physics = None if built is None else physics_of(built.plant)
-        if built is not None and physics is not None:
-            return physics.model, built.robot, physics.scene
-    robot = Robot.load(info.robot)
-    if log["measurement/q"].shape[1] != robot.n:
-        joints = log["measurement/q"].shape[1]
-        raise RobotError(
-            f"{log.source} has {joints} joints, but robot {info.robot!r} has {robot.n}: it cannot be drawn"
-        )
-    return spec_from_robot(robot).compile(), robot, None
