@@ -27,6 +27,7 @@ def rows(summary: Summary, names: list[str]) -> str:
         for metric in row.metrics:
             units.setdefault(metric.name, metric)
     heads = [f"{name}, {units[name].unit}" if name in units and units[name].unit != "1" else name for name in names]
+    heads = [head.replace("|", "\\|") for head in heads]
     lines = [f"| controller | row | {' | '.join(heads)} | failed |", f"|---|---|{'---:|' * len(names)}---:|"]
     for row in summary.cases:
         cells = [cell(row, name) for name in names]

@@ -79,14 +79,16 @@ def planned(
     """
     wanted = schedule(config, parameters.whole_tuning() or config.exploration)
     planner = config.planner
-    if (config.entry.planner or planner.kind) == "attractor":
+    kind = planner.kind if planner.kind == "printed" else config.entry.planner or planner.kind
+    if kind != "superposition":
         if lookahead is not None:
             raise ConfigError(
-                f"controller {config.controller!r} wants a preview, which planner.kind = 'attractor' cannot give;"
+                f"controller {config.controller!r} wants a preview, which planner.kind = {kind!r} cannot give;"
                 " valid: 'superposition'"
             )
         # as printed, eq. 3 gets stuck or runs away and nothing else could be compared: the corrected reading
-        return AttractorPlanner(wanted, robot.placement, AttractorSettings(planner.speed, planner.acceleration))
+        settings = AttractorSettings(planner.speed, planner.acceleration, printed=kind == "printed")
+        return AttractorPlanner(wanted, robot.placement, settings)
     limits = PlannerLimits(linear=MotionLimits(planner.speed, planner.acceleration))
     return HarmonicPlanner(
         wanted, robot.placement, limits, {config.frame: workspace_of(robot, config.frame)}, lookahead

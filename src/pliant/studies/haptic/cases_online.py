@@ -7,7 +7,7 @@ from pliant.references.exploration.config import ExplorationConfig
 from pliant.studies.haptic.config import Check, HapticCaseConfig
 from pliant.studies.haptic.delays import delay_figure, delay_rows
 from pliant.studies.haptic.parameters import parameter_figure, parameter_rows
-from pliant.studies.haptic.rows import drawn, plain
+from pliant.studies.haptic.rows import PRINTED, drawn
 from pliant.studies.haptic.scene_config import Floor, HapticScene, Material
 from pliant.studies.haptic.steps_config import FootImpedance, HapticPlannerConfig, OnlineChanges, Step
 
@@ -58,6 +58,12 @@ TARGET_SEQUENCE = HapticCaseConfig(
     ),
     snapshots=(1.1, 2.3, 4.7, 6.9, 9.5),
 )
+
+
+def _planned(kind: str) -> Row:
+    """The same targets by another planner."""
+    return Row(f"planner {kind}", changes={"planner": {"kind": kind}})
+
 
 DELAY = HapticCaseConfig(
     case="delay",
@@ -112,7 +118,7 @@ PARAMETERS = HapticCaseConfig(
 ONLINE_CASES = (
     drawn(ONLINE, seeds=3),
     Case(DELAY, (Row(), *delay_rows()), figures=[delay_figure]),
-    plain(TARGET_SEQUENCE),
+    Case(TARGET_SEQUENCE, (Row(), PRINTED, *(_planned(kind) for kind in ("attractor", "printed")))),
     drawn(RANDOM, seeds=20),
     Case(PARAMETERS, (Row(), *parameter_rows()), figures=[parameter_figure]),
 )

@@ -43,10 +43,10 @@ class FootImpedance(Config):
 class HapticPlannerConfig(Config):
     """How targets that jump become motion."""
 
-    kind: Literal["superposition", "attractor"] = Field(
+    kind: Literal["superposition", "attractor", "printed"] = Field(
         default="superposition",
         description="superposition: never leaves the hull of the targets; attractor: [HapFIC] eq. 2-3, corrected, which"
-        " haptic-paper always has",
+        " haptic-paper always has; printed: the same as printed",
     )
     speed: float = quantity(0.2, "m/s", "fastest motion of the target", ge=1e-4, le=100.0)
     acceleration: float = quantity(2.0, "m/s²", "largest acceleration of the target", ge=1e-4, le=1e4)

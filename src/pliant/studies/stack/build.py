@@ -125,8 +125,13 @@ def _schedule(config: StackCaseConfig, rng: np.random.Generator) -> list[TuningC
     for time in np.arange(config.path.ramp, config.duration, 1.0 / config.retuning.rate):
         for frame, now in tunings.items():
             factor = np.exp(rng.uniform(low, high, (2, now.axes)))
-            stiffness = now.stiffness * factor[0]
-            bound = np.maximum(now.force_max * factor[1], stiffness * linear_range(now))
-            tuning = ImpedanceTuning(stiffness, bound, now.range, now.linear_range)
+            stiffness, bend, reach = now.stiffness * factor[0], now.linear_range, now.range
+            if config.retuning.ranges:
+                wider = np.exp(rng.uniform(low, high, (2, now.axes)))
+                reach = reach * wider[1]
+                bend = np.minimum(linear_range(now) * wider[0], 0.95 * reach)
+            straight = linear_range(now) if bend is None else bend
+            bound = np.maximum(now.force_max * factor[1], stiffness * straight)
+            tuning = ImpedanceTuning(stiffness, bound, reach, bend)
             changes.append(TuningChange(float(time), frame, tuning))
     return changes

@@ -121,7 +121,10 @@ _ALL = (
     _case(
         StackCaseConfig(case="calibration", retuning=GainChanges(), joints=_GAZEBO),
         targets={"|h| over F_max": 1.0},
-        rows=[Row(draws=_PUSHED)],
+        rows=[
+            Row(draws=_PUSHED),
+            Row("x_0 and x_b too", changes={"retuning": {"ranges": True}}, draws=_PUSHED),
+        ],
     ),
     _case(
         StackCaseConfig(case="balance", joints=_GAZEBO),

@@ -87,6 +87,7 @@ class GainChanges(Config):
     factor: Annotated[tuple[_Factor, _Factor], AfterValidator(in_order)] = quantity(
         (0.1, 2.0), "1", "range of the factor on K_0 and F_max"
     )
+    ranges: bool = Field(default=False, description="x_0 and x_b change as well, by factors of the same range")
 
 
 FRAMES = ("flange", "elbow")
