@@ -55,3 +55,23 @@ def test_the_planner_as_printed_runs_away_and_its_corrected_reading_does_not() -
         for kind in ("superposition", "attractor", "printed")
     }
     assert max(force["superposition"], force["attractor"]) < 15.0 < 50.0 < force["printed"]
+
+
+@pytest.mark.study
+def test_a_stream_of_targets_that_is_late_presses_as_one_that_is_not() -> None:
+    """The same force 0.5 s later; the printed exploration loses more of it."""
+    study = get_study("haptic")
+    runs = {(one.controller, one.variant): one for one in study.runs("target-stream", 1)}
+    name = "largest force error"
+    kept = [("haptic", ""), ("haptic", "0.5 s late"), ("haptic-paper", "")]
+    force = {key: value(run_case(study, runs[key]), name) for key in kept}
+    assert force["haptic", "0.5 s late"] == pytest.approx(force["haptic", ""], rel=0.05)
+    assert force["haptic-paper", ""] > 2.0 * force["haptic", ""]
+
+
+def test_the_stream_says_ten_targets_a_second_from_its_delay_on() -> None:
+    for one in get_study("haptic").runs("target-stream", 1):
+        late = float(one.variant.split()[0]) if one.variant else 0.0
+        times = np.array([step.time for step in one.steps[1:]])
+        np.testing.assert_allclose(np.diff(times), 0.1, atol=1e-9)
+        assert times[0] == pytest.approx(1.5 + late)

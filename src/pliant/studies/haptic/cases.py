@@ -12,9 +12,10 @@ from pliant.studies.haptic.cases_ball import BALL_CASES
 from pliant.studies.haptic.cases_box import BOX_CASES
 from pliant.studies.haptic.cases_floor import FLOOR_CASES
 from pliant.studies.haptic.cases_online import ONLINE_CASES
+from pliant.studies.haptic.cases_stream import STREAM_CASES
 from pliant.studies.haptic.config import HapticCaseConfig
 
 CASES: Mapping[str, Case[HapticCaseConfig]] = {
-    case.config.case: case for case in (*FLOOR_CASES, *BOX_CASES, *BALL_CASES, *ONLINE_CASES)
+    case.config.case: case for case in (*FLOOR_CASES, *BOX_CASES, *BALL_CASES, *ONLINE_CASES, *STREAM_CASES)
 }
 """by name; the first is what `pliant run haptic` does"""
