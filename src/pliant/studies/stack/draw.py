@@ -126,7 +126,11 @@ def _rmse_groups(results: Sequence[Result]) -> dict[str, list[Metric]]:
 
 
 def attractor_figure() -> Figure:
-    """Force, energy and phase portrait of one axis: [Stack] Fig. 3, with a 2 kg mass and no damping anywhere."""
+    """Force, energy and phase portrait of one axis: [Stack] Fig. 3, with a 2 kg mass and no damping anywhere.
+
+    Fig. 3a has the attractor of a constant spring, here of the same stiffness: it is linear as far as it is drawn.
+    """
+    linear = ForceProfile.of(ImpedanceTuning(*(np.array([x]) for x in (500.0, 500.0, 1.0, 0.9))))
     tuning = ImpedanceTuning(*(np.array([x]) for x in (500.0, 100.0, 0.3, 0.1)))
     profile = ForceProfile.of(tuning)
     error = np.linspace(-0.4, 0.4, 801)
@@ -135,6 +139,7 @@ def attractor_figure() -> Figure:
     energies = {"stored": profile.energy(error[:, None])[:, 0]}
     portraits = {
         "capped law": [_trajectory(profile, Law.CAPPED, x) for x in (0.1, 0.2, 0.3, -0.15, -0.3)],
+        "capped law, constant spring": [_trajectory(linear, Law.CAPPED, x) for x in (0.25, -0.25)],
         "plain spring": [_trajectory(profile, Law.SPRING, 0.35)],
     }
     return attractor(error, forces, energies, portraits, "Fractal attractor of one axis")
