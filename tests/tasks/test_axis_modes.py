@@ -158,3 +158,15 @@ def test_a_wrench_gives_a_force_to_its_axes_alone() -> None:
     assert modes.pressing(np.array([*(7.0 * TURN[:, 2]), 0, 0, 0])) is modes
     more = modes.pressing(np.array([*(7.0 * TURN[:, 0]), *(0.5 * TURN[:, 1])]))
     assert more.modes == ("force", "motion", "force", "motion", "force", "motion")
+
+
+def test_a_predictive_controller_says_which_axes_it_does_not_follow() -> None:
+    def said(modes: tuple[str, ...], controller: str) -> list[str]:
+        study = of_value(against_a_wall(modes, controller), "wall")
+        return [text for text in study.build(study.case("wall")).warnings if "will not be held" in text]
+
+    free = ("free", "free", "free")
+    (text,) = said(("force", "free", "motion", "force", "free", "motion"), "offset-free-mpc")
+    assert "phase 'stay' (x, y, about x, about y)" in text
+    assert said(("motion", "motion", "motion", *free), "offset-free-mpc") == []
+    assert said(("force", "free", "motion", *free), "haptic") == []

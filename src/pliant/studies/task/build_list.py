@@ -37,7 +37,7 @@ from pliant.studies.task.listed import (
     stages_of,
     tracks_of,
 )
-from pliant.studies.task.pressed import asked_of, pressed_planes
+from pliant.studies.task.pressed import asked_of, beside_the_force, pressed_planes
 from pliant.studies.task.sensor import known_load, sensor_of
 from pliant.studies.task.tracked import tracked_motion
 from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
@@ -85,6 +85,21 @@ def listed(case: TaskCase) -> Listed:
     return Listed(robot, believed, case.controller_parameters(robot, believed), start, _whole(case), None)
 
 
+def _not_held(case: TaskCase, made: Listed) -> tuple[str, ...]:
+    """What phases ask of their axes and a predictive controller does not do: it presses along one direction."""
+    if made.tracked is not None or case.entry.needs(made.parameters).preview is None:
+        return ()
+    stages = stages_of(case, made.robot, made.robot.placement(made.start, frame_of(case))[1])
+    beside = {stage.name: beside_the_force(stage) for stage in stages}
+    told = ", ".join(f"{name!r} ({', '.join(axes)})" for name, axes in beside.items() if axes)
+    if not told:
+        return ()
+    return (
+        f"controller {case.controller!r} presses along one direction and moves along the others: what modes ask beside"
+        f" that of phase {told} will not be held; haptic and operational-space hold it",
+    )
+
+
 def _refuse(case: TaskCase, stages: Sequence[Stage]) -> None:
     """Raises ConfigError where targets ask for more than the task's limits allow."""
     forces = [(f"the wrench of phase {one.name!r}", float(np.linalg.norm(one.task.wrench[:3]))) for one in stages]
@@ -121,6 +136,7 @@ def build_list(case: TaskCase) -> Experiment:
         joint_limits=case.joint_limits,
         duration=made.duration,
         limits=run_limits(case.limits, frames[0]),
+        warnings=_not_held(case, made),
         channels=() if tracking else (Channel(f"planner/{frames[0]}/clamped", "m"),),
     )
     return wired(case.entry, made.parameters, offer)

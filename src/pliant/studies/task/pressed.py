@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pliant.axis_modes import Mode
+from pliant.axis_modes import AXIS_NAMES, Mode
 from pliant.references.force_axes import task_axes
 from pliant.references.stages import Stage, StageChange
 from pliant.signals import TaskReference
@@ -46,6 +46,21 @@ def pressed_along(task: TaskReference) -> Array:
 def asked_of(task: TaskReference) -> tuple[Mode, ...]:
     """(6,) modes of a task; empty where it has none."""
     return () if task.modes is None else task.modes.modes
+
+
+def beside_the_force(stage: Stage) -> tuple[str, ...]:
+    """Axes of which a phase asks something else than a motion or a part of its force: 0 N, a moment, or nothing; three
+    free rotations are an orientation that is left alone."""
+    modes, told = asked_of(stage.task), stage.task.modes
+    if told is None:
+        return ()
+    wrench = told.into(stage.task.wrench)
+    small = 1e-9 * max(float(np.abs(wrench).max()), 1e-9)
+    silent = [place for place in range(6) if modes[place] == "force" and (place >= 3 or abs(wrench[place]) <= small)]
+    loose = [place for place in range(3) if modes[place] == "free"]
+    if "free" in modes[3:] and set(modes[3:]) != {"free"}:
+        loose += [place for place in range(3, 6) if modes[place] == "free"]
+    return tuple(AXIS_NAMES[place] for place in sorted(silent + loose))
 
 
 def _frame(task: TaskReference) -> Array:
