@@ -59,6 +59,17 @@ def test_a_list_is_checked_along_its_targets(tmp_path: Path, monkeypatch: pytest
     assert "torque of joint" in done.output
 
 
+def test_a_task_that_must_go_out_of_reach_is_no_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path)
+    assert CLI.invoke(app, ["task", "check", "list.toml", "--case", "away"]).exit_code == 1
+    written(tmp_path, 'check = "off"\n')
+    done = CLI.invoke(app, ["task", "check", "list.toml", "--case", "away"])
+    assert done.exit_code == 0, done.output
+    assert "cannot reach" in done.output
+    assert 'the task says check = "off"' in done.output
+
+
 def test_a_place_that_the_planner_would_bring_back_is_checked_as_asked(tmp_path: Path) -> None:
     """A target out of reach is brought back while it runs; the check says that it was asked for."""
     study = study_of(written(tmp_path))

@@ -36,6 +36,9 @@ class TaskParts(Config):
 
     format: int = Field(default=FORMAT, ge=FORMAT, le=FORMAT, description="version of this form")
     description: str = Field(default="", description="one line, for people")
+    check: Literal["on", "off"] = Field(
+        default="on", description="off: a task that must go out of reach; `task check` says so and does not fail"
+    )
     locked: dict[str, float] | None = quantity(
         None, "deg", "joint → angle at which it is fixed; none: those that the catalogue locks"
     )
