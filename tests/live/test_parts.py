@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 from pydantic import BaseModel
 
+from pliant.environment import Environment, FeltSurface
 from pliant.errors import ConfigError
 from pliant.live.link.mailbox import Mailbox
 from pliant.live.link.messages import Aim, Flow, PushNow, StepOnce
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.requests import Desk, Wishes
 from pliant.live.loop.steered_plant import SteeredPlant
+from pliant.live.page.felt import environment_line, surface_line
 from pliant.live.page.fields import group_of, nested
 from pliant.live.page.form import parsed
 from pliant.live.page.pushes import PushControls
@@ -27,6 +29,16 @@ from pliant.robot import Robot
 from pliant.signals import Command
 from pliant.simulation import Imperfections, MujocoPlant, Scene, Surface, floor
 from pliant.simulation.imperfections.actuation import ActuationConfig
+
+# ---------------------------------------------------------------------- what is felt
+
+
+def test_what_is_felt_is_a_line_with_units_and_uncertainty() -> None:
+    felt = Environment(stiffness=19_876.0, damping=103.4, stiffness_std=312.0, damping_std=np.inf)
+    assert environment_line("tool", felt) == "believed at **tool**: stiffness 19900 ± 310 N/m, damping unknown"
+    turned = FeltSurface(np.zeros(3), np.radians([3.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0]), np.radians(0.25))
+    assert surface_line("tool", turned) == "believed at **tool**: surface turned by 5 ± 0.25 °"
+
 
 # ---------------------------------------------------------------------- mailbox
 

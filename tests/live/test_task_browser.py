@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -26,12 +27,25 @@ def test_the_force_of_a_task_is_turned_on_the_first_tab(shown: Live) -> None:
     shown.tab.get_by_text("speed [m/s]").first.wait_for()
     until(lambda: shown.latest("contact") > 18.0, "the force of the task")
     shown.shoot("task_before")
+    believed(shown)
     drag(shown, "force [N]", 0.75)  # of 0 to 40 N
     until(lambda: shown.latest("contact") > 27.0, "more force")
     shown.settle(0.5)
     assert shown.latest("contact") == pytest.approx(30.0, abs=2.5)
     shown.shoot("task_force")
     assert shown.complaints == []
+
+
+def believed(shown: Live) -> None:
+    """The first tab says the stiffness that the controller believes; once it has pressed, near the table's 2e4 N/m."""
+    line = shown.tab.get_by_text("believed at").first
+    line.wait_for()
+
+    def stiffness() -> float:
+        found = re.search(r"stiffness ([\d.e+]+) ±", line.inner_text())
+        return float(found[1]) if found else 0.0
+
+    until(lambda: stiffness() == pytest.approx(2e4, rel=0.15), "the stiffness of the table")
 
 
 def test_the_speed_of_a_task_is_turned_on_the_first_tab(shown: Live) -> None:

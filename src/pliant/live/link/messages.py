@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from pliant.environment import Environment, FeltSurface
 from pliant.experiments.base import CaseConfig
 from pliant.simulation import Imperfections, Scene
 from pliant.spatial import Array
@@ -184,6 +185,10 @@ class Picture:
     pushes: Mapping[str, tuple[Array, Array]] = field(default_factory=dict[str, tuple[Array, Array]])
     """frame → its position (3,) m and the force (3,) N that pushes it"""
     phase: str = ""
+    environments: Mapping[str, Environment] = field(default_factory=dict[str, Environment])
+    """frame → what it is believed to touch, where that is estimated"""
+    surfaces: Mapping[str, FeltSurface] = field(default_factory=dict[str, FeltSurface])
+    """frame → how the surface is believed to stand that it touched, where that is estimated"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 
+from pliant.environment import Environment
 from pliant.errors import OutputError
 from pliant.experiments.drawn import drawn_log
 from pliant.live.link.messages import Picture
@@ -41,6 +44,7 @@ class LoggedScene:
         self.time = log.time("measurement/q")
         self._q = log["truth/q" if "truth/q" in log else "measurement/q"]
         self._wrenches = {name.split("/")[1]: name for name in log.matching("/wrench") if name.startswith("truth/")}
+        self._felt = [name.split("/")[1] for name in log.matching("/stiffness_std") if name.startswith("estimate/")]
         self._objects = {name.split("/")[2]: name for name in log.channels if name.startswith("truth/objects/")}
 
     def picture(self, at: float) -> Picture:
@@ -68,6 +72,7 @@ class LoggedScene:
             asked=self._asked(moment),
             predicted_path=self._rows("mpc/predicted_path", moment),
             predicted_force=self._rows("mpc/predicted_force", moment),
+            environments=self._environments(moment),
         )
 
     def curves(self, at: float, window: float) -> Array:
@@ -94,6 +99,14 @@ class LoggedScene:
             place, wrench = self._body.frame(frame), self._value(channel, at)
             if place is not None and wrench is not None:
                 found[frame] = place, wrench[:3]
+        return found
+
+    def _environments(self, at: float) -> dict[str, Environment]:
+        found: dict[str, Environment] = {}
+        for frame in self._felt:
+            numbers = [self._value(f"estimate/{frame}/{part.name}", at) for part in fields(Environment)]
+            if all(number is not None for number in numbers):
+                found[frame] = Environment(*(float(np.squeeze(number)) for number in numbers if number is not None))
         return found
 
     def _asked(self, at: float) -> Array:

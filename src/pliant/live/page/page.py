@@ -26,6 +26,7 @@ from pliant.live.link.messages import (
 from pliant.live.link.pipe import Link
 from pliant.live.link.steering_lock import Seat
 from pliant.live.loop.tuning import online_fields, online_group, parameters_of
+from pliant.live.page.felt import FeltPanel
 from pliant.live.page.fields import Path as Place
 from pliant.live.page.fields import group_of, nested
 from pliant.live.page.form import Form
@@ -65,6 +66,7 @@ class Page:
         with tabs.add_tab("Run"):
             self.run = RunControls(self._viser, self.seat, link.send, folder)
             self.task = TaskControls(self._viser, self.seat, link.send)
+            self.felt = FeltPanel(self._viser)
         self._tuning_tab = tabs.add_tab("Tune")
         with tabs.add_tab("Touch"):
             with gui.add_folder("Target"):
@@ -115,8 +117,6 @@ class Page:
         """Ends `serve`."""
         self._stop.set()
 
-    # ------------------------------------------------------------------ from the loop
-
     def _show(self, message: Message) -> None:
         match message:
             case Ready():
@@ -155,6 +155,7 @@ class Page:
             self._framed = True
             self.view.frame_camera(picture.tool)
         self.view.draw(picture)
+        self.felt.show(picture)
         self.target.follow(picture, self._presses and self._ready is not None and not self._ready.config.dials)
         at = picture.contacts.get(self.pushes.frame)
         pushed = picture.pushes.get(self.pushes.frame)

@@ -53,6 +53,8 @@ def picture(
         predicted_force=_predicted(tick, "mpc/predicted_force", None),
         pushes=_pushes(pushes, body),
         phase=reference.phase,
+        environments=dict(tick.estimate.environments),
+        surfaces=dict(tick.estimate.surfaces),
     )
 
 

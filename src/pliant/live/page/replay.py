@@ -14,6 +14,7 @@ import numpy as np
 import viser
 
 from pliant.live.link.steering_lock import Seat
+from pliant.live.page.felt import FeltPanel
 from pliant.live.page.logged_scene import LoggedScene
 from pliant.live.page.plots import Plots
 from pliant.live.page.scene_view import SceneView
@@ -51,6 +52,7 @@ class ReplayPage:
         self._play = gui.add_button("Pause", icon=viser.Icon.PLAYER_PAUSE)
         self._speed = gui.add_dropdown("speed", tuple(_SPEEDS), initial_value="1×")
         self._status = gui.add_markdown("")
+        self.felt = FeltPanel(self._viser)
         self._play.on_click(self._toggle)
         self._slider.on_update(self._seek)
         self._now = self._start
@@ -78,6 +80,7 @@ class ReplayPage:
             before = now
             picture = self._shown.picture(self._now)
             self.view.draw(picture)
+            self.felt.show(picture)
             if count % 3 == 0:
                 self.plots.show(self._shown.curves(self._now, 10.0))
                 self._status.content = f"**t = {picture.time:.3f} s**"
