@@ -1,9 +1,11 @@
 """A raster on five surfaces with several robots, over seeds: what the tasks that ship ask for, and what comes out.
 
-    python benchmarks/tasks.py                                  iiwa14, panda, ur5e; 3 seeds; about half an hour
+    python benchmarks/tasks.py                                  iiwa14, panda, ur5e; 3 seeds; about five minutes
     python benchmarks/tasks.py --size 0.12,0.02                 two lines and the turn between them
     python benchmarks/tasks.py --perfect                        perfect arms, surfaces where they are believed
     python benchmarks/tasks.py --controller haptic --seeds 1
+    python benchmarks/tasks.py --along estimated                the normal as the path of the contact tells it
+    python benchmarks/tasks.py --robots FILE.urdf               another robot; `benchmarks/heavier.py` makes one
     python benchmarks/tasks.py --docs docs/tasks.md matrix      the table goes between <!-- matrix --> and <!-- end -->
 
 One line a run, then a table in Markdown: the mean over the seeds that did not fail of the mean force error, the worst
@@ -25,7 +27,7 @@ from pliant.studies.task.study import study_of
 
 TASKS = ("wipe", "wipe-tilted-20", "wipe-tilted-45", "wipe-cylinder", "wipe-sphere")
 ROBOTS = ("iiwa14", "panda", "ur5e")
-WORST = ("force_error_max", "force_peak", "contact_lost", "path_error")
+WORST = ("force_error_max", "force_peak", "contact_lost", "path_error", "force_swing", "force_line")
 PERFECT = {
     "timing": {"sensing_delay": 0.0, "computation_delay": 0.0},
     "truth": {"shift": 0.0, "tilt": 0.0, "imperfections": "none"},
@@ -38,6 +40,8 @@ def run(task: str, robot: str, seed: int, asked: argparse.Namespace) -> Result |
     case = merged(study.case(task), {"robot": robot, "controller": asked.controller, "seed": seed})
     if asked.rotors is not None:
         case = merged(case, {"rotor_inertia": asked.rotors})
+    if asked.along != "believed":
+        case = merged(case, {"force": {"along": asked.along}})
     if asked.size:
         case = merged(case, {"path": {"size": tuple(float(length) for length in asked.size.split(","))}})
     try:
@@ -61,7 +65,7 @@ def row(task: str, robot: str, results: Sequence[Result | str]) -> str:
         errors = [found["force_error"] for found in good]
         cells = [f"{sum(errors) / len(errors):.2f}", f"{max(errors):.2f}"]
         cells += [f"{max(found[name] for found in good):.3g}" for name in WORST]
-    return f"| `{task}` | {robot} | {len(results) - len(good)} of {len(results)} | {' | '.join(cells)} |"
+    return f"| `{task}` | {Path(robot).stem} | {len(results) - len(good)} of {len(results)} | {' | '.join(cells)} |"
 
 
 def table(found: Mapping[tuple[str, str], Sequence[Result | str]]) -> str:
@@ -69,7 +73,8 @@ def table(found: Mapping[tuple[str, str], Sequence[Result | str]]) -> str:
         "| task | robot | failed | force_error, N | worst seed | force_error_max, N | force_peak, N | contact_lost, % |"
     )
     rows = [row(*pair, results) for pair, results in found.items() if results]
-    return "\n".join((f"{head} path_error, mm |", f"|---|---|{7 * '---:|'}", *rows))
+    head += " path_error, mm | force_swing, % | force_line, % |"
+    return "\n".join((head, f"|---|---|{9 * '---:|'}", *rows))
 
 
 def put_into(file: Path, name: str, text: str) -> None:
@@ -89,6 +94,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=None, help="default: 3, or 1 with --perfect")
     parser.add_argument("--rotors", type=float, help="inertia of every joint's motor, kg m²; default: the catalogue's")
     parser.add_argument("--size", default="", help="of the raster, m,m; default: the task's")
+    parser.add_argument("--along", default="believed", help="believed or estimated: whose normal the force follows")
     parser.add_argument("--perfect", action="store_true")
     parser.add_argument("--docs", nargs=2, metavar=("FILE", "NAME"), help="where the table is written, too")
     asked = parser.parse_args()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from pliant.studies.polishing import STUDY as POLISHING
 from pliant.studies.polishing.measure import measure as polishing
 from pliant.studies.stack import STUDY as STACK
 from pliant.studies.stack.measure import measure as stack
-from pliant.studies.task.measure import MEASURES, measured, signals_of
+from pliant.studies.task.measure import MEASURES, TaskSignals, measured, signals_of
 from pliant.surfaces import PlaneSurface
 from pliant.telemetry import contact_metrics, metrics
 from tests.telemetry.own_functions import functions_of
@@ -133,6 +134,7 @@ POLISHING_ANSWERS: Mapping[str, float] = {
     "E_λ": 7.5,  # k
     "E_P": (7.5 + 15.0) / 2.0,  # mm: k along x, −2 k along y
     "E_τ": (7.5 + 0.5 * 7.5) / 6.0,  # N·m: two of six joints
+    "E_τ averaged over 21 ms": (7.5 + 0.5 * 7.5) / 6.0,  # the same: both grow along straight lines
     "λ_max": 59.0,
     "λ_dev": 9.0,
     "t_break": 100.0 / 6.0,  # one of samples 4 … 9
@@ -279,8 +281,27 @@ TASK_ANSWERS: Mapping[str, float] = {
 }
 
 
+STEADY_ANSWERS: Mapping[str, float] = {"force_swing": 3.0 / math.sqrt(2.0), "force_line": 3.0}  # %
+
+
+def test_how_steady_a_force_is() -> None:
+    time = 1e-3 * np.arange(2000)
+    wanted = np.full(2000, 20.0)
+    force = wanted + np.where(time < 0.5, 7.0, 0.6) * np.sin(
+        2.0 * math.pi * 25.0 * time
+    )  # swings more while it settles
+    here = TaskSignals(time, force, wanted, 0.0 * time, np.full(2000, True), np.zeros((2000, 2)))
+    found = {metric.name: metric.value for metric in measured(here, {}) if metric.name in STEADY_ANSWERS}
+    assert found == pytest.approx(STEADY_ANSWERS, rel=1e-6)
+    ramp = replace(here, wanted=np.linspace(5.0, 20.0, 2000))
+    assert not {metric.name for metric in measured(ramp, {})} & set(STEADY_ANSWERS)
+    (asked,) = [metric for metric in measured(ramp, {"force_line": 2.0}) if metric.name == "force_line"]
+    assert math.isnan(asked.value)
+    assert asked.met is False
+
+
 def test_metrics_of_a_task_along_a_tilted_normal() -> None:
-    assert set(MEASURES) == set(TASK_ANSWERS)
+    assert set(MEASURES) == {*TASK_ANSWERS, *STEADY_ANSWERS}
     pressed = np.where((K < 2) | (K == 7), 0.0, 20.0 + K)
     off = 1e-3 * (np.outer(K, [1.0, 0.0, 0.0]) + np.outer(2.0 * K, ALONG) + np.outer(5.0 * K, NORMAL))
     force = np.hstack([np.outer(pressed, NORMAL) + np.outer(3.0 * np.ones(10), ALONG), np.zeros((10, 3))])

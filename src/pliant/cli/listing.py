@@ -8,17 +8,24 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from pliant.cli.one_controller import print_controller
 from pliant.errors import ConfigError, options
 from pliant.experiments.registry import get_study, study_names
 from pliant.robots import CATALOGUE, is_available
 from pliant.tasks.files import catalogue, load_task, read_task
-from pliant.wiring.registry import broken_controllers, controllers
+from pliant.wiring.registry import broken_controllers, controllers, find_controller
 
 
-def list_command(console: Console, what: str | None) -> None:
-    """Prints one of the lists, or all. Raises ConfigError for another name."""
+def list_command(console: Console, what: str | None, name: str | None = None) -> None:
+    """Prints one of the lists, all, or what is known of one controller. Raises ConfigError for another name."""
     if what is not None and what not in _LISTS:
         raise ConfigError(f"there is no list of {what!r}; {options(_LISTS, what)}")
+    if name is not None:
+        if what != "controllers":
+            remedy = "; `pliant doctor NAME` looks at a robot" if what == "robots" else ""
+            raise ConfigError(f"one name is listed of controllers alone, got {what} {name!r}{remedy}")
+        print_controller(console, find_controller(name))
+        return
     for name, table in _LISTS.items():
         if what in (None, name):
             console.print(table())

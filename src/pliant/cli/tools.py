@@ -65,11 +65,17 @@ def list_(
     what: Annotated[
         str | None, typer.Argument(metavar="[robots|controllers|studies|tasks]", help="What to list; nothing: all.")
     ] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[NAME]", help="One controller, my_module:MyController too: its needs, parameters, where it holds."
+        ),
+    ] = None,
 ) -> None:
-    """Lists robots, controllers, studies and tasks."""
+    """Lists robots, controllers, studies and tasks; of one controller all that is known."""
     from pliant.cli.listing import list_command
 
-    list_command(program.out, what)
+    list_command(program.out, what, name)
 
 
 @program.app.command()

@@ -77,7 +77,7 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
         _stack(
             "spring",
             Law.SPRING,
-            "the same force profiles as plain springs, without an attractor; undamped unless joint_damping is given",
+            "the same force profiles as plain springs, without an attractor; it comes to rest by joint_damping alone",
         ),
         ControllerEntry(
             "operational-space",

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from pliant.controllers.advice import SAFE_PHASE
+from pliant.controllers.attractor import Law
 from pliant.controllers.config import FrameTaskConfig, OperationalSpaceConfig, StackConfig, TranslationConfig
 from pliant.controllers.presets import SOFT_STACK
 from pliant.entries import Believed
+from pliant.rigid_body import mass_matrix
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
 _INTEGRAL = 20.0  # 1/s
 _SLOWER = 0.1  # k_i times the loop's lateness, at most
 _FAST = 1e-3  # s; stiffness that a slower or later loop does not bear
+_MOST_DAMPING = 20.0  # N·m·s/rad
 _SOFT = 3e-3  # s; lateness up to which a wrist bears the soft gains' rotation
 
 
@@ -21,7 +25,9 @@ def suggest_stack(robot: Robot, config: StackConfig, believed: Believed) -> Stac
 
     Where a reference carries an impedance for a frame, the task has that one. The model's gravity torque is added
     where the robot does not compensate gravity by itself. Beyond 3 ms the stiffness of rotation falls as 1 / lateness:
-    at 7 ms 60 N·m/rad made a wrist that carries a tool of 0.2 m flutter.
+    at 7 ms 60 N·m/rad made a wrist that carries a tool of 0.2 m flutter. Plain springs, which come to rest by damping
+    alone, get 0.4 m / lateness for all joints, m the smallest inertia that a joint feels at home: ω T = 0.4 of the
+    joint's own speed loop.
     """
     late = believed.period + believed.sensing_delay + believed.computation_delay
     gains = config if late <= _FAST and believed.compensation == "none" else SOFT_STACK
@@ -32,7 +38,15 @@ def suggest_stack(robot: Robot, config: StackConfig, believed: Believed) -> Stac
         label = "ee" if place == 0 else frame
         tasks[label] = _later(_task(first if place == 0 else other, frame, believed, robot.n), late)
     update = {"tasks": tasks, "gravity_compensation": believed.compensation == "none"}
+    if config.law is Law.SPRING and config.joint_damping == 0.0:
+        update["joint_damping"] = min(SAFE_PHASE * _lightest(robot) / late, _MOST_DAMPING)
     return config.model_copy(update=update)
+
+
+def _lightest(robot: Robot) -> float:
+    """kg m²: the smallest inertia that a torque of one joint meets at home, the others free."""
+    M = mass_matrix(robot.model, robot.model.createData(), robot.home)
+    return float(1.0 / np.max(np.diag(np.linalg.inv(M))))
 
 
 def _task(gains: FrameTaskConfig, frame: str, believed: Believed, joints: int) -> FrameTaskConfig:

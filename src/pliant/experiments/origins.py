@@ -49,8 +49,8 @@ def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]
     """
     config = choice.config
     found = [
-        _origin(choice, path, value, unit, default, choice.base)
-        for path, value, unit, default in _leaves(config, None, ())
+        _origin(choice, path, value, unit_of(about), default, choice.base)
+        for path, value, about, default in leaves(config)
         if path[0] != _CONTROL
     ]
     if parameters is None:
@@ -58,8 +58,8 @@ def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]
     above = (_CONTROL, config.controller) if config.control_by_name else (_CONTROL,)
     default = find_controller(config.controller).default
     return found + [
-        _origin(choice, (*above, *path), value, unit, usual, "suggested")
-        for path, value, unit, usual in _leaves(parameters, default, ())
+        _origin(choice, (*above, *path), value, unit_of(about), usual, "suggested")
+        for path, value, about, usual in leaves(parameters, default)
     ]
 
 
@@ -81,21 +81,27 @@ def _gives(values: Any, path: tuple[str, ...]) -> bool:
     return True
 
 
-def _leaves(
-    config: BaseModel, default: BaseModel | None, above: tuple[str, ...]
-) -> Iterator[tuple[tuple[str, ...], Any, str, Any]]:
-    """Key, value, unit and default of everything below. Args: default: None: what the fields say."""
+def leaves(
+    config: BaseModel, default: BaseModel | None = None, above: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], Any, FieldInfo, Any]]:
+    """Key, value, field and default of everything in a configuration.
+
+    Args:
+        config: whose values.
+        default: whose values are the defaults; None: what the fields say.
+        above: parts of the key in front of it.
+    """
     for name, about in type(config).model_fields.items():
         path, value = (*above, name), getattr(config, name)
         usual = getattr(default, name, _UNKNOWN) if default is not None else _default(about)
         if isinstance(value, BaseModel):
-            yield from _leaves(value, usual if type(usual) is type(value) else None, path)
+            yield from leaves(value, usual if type(usual) is type(value) else None, path)
         elif isinstance(value, Mapping) and any(isinstance(inner, BaseModel) for inner in value.values()):
             for key, inner in value.items():
                 if isinstance(inner, BaseModel):
-                    yield from _leaves(inner, None, (*path, str(key)))
+                    yield from leaves(inner, None, (*path, str(key)))
         else:
-            yield path, value, unit_of(about), usual
+            yield path, value, about, usual
 
 
 def _default(about: FieldInfo) -> Any:

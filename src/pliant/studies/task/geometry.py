@@ -24,6 +24,7 @@ from pliant.tasks.task import TaskParts
 
 _FORWARD = (0.5, 0.6, 0.7, 0.8, 0.9)  # of the arm's reach: where a place for a part is looked for
 _HEIGHT = (0.07, 0.28, 0.5)  # of that reach, over the base
+_NEARER = ((0.2, 0.3, 0.4, 0.5), (-0.15, 0.0, 0.07, 0.28))  # the same for an arm that is short beside its tool
 _AROUND = (-0.05, 0.0, 0.05)  # m, before and behind a place, where the tool must do as well
 _LONGEST = 200.0  # m of a pattern
 _MILLIMETRES = 5.0  # m; a path as long as that was written in another unit
@@ -108,18 +109,19 @@ def good_place(robot: Robot, frame: str, normal: Array, curvature: float) -> Arr
         distance, angle = solver.shortfall(q, target)
         return freedom(solver, box, q) if distance < 1e-3 and angle < 1e-2 else 0.0
 
-    best, most = None, 0.0
-    for share, height in itertools.product(_FORWARD, _HEIGHT):
-        at = length * (share * direction + np.array([0.0, 0.0, height]))
-        least = min(free(at, step) for step in _AROUND)
-        if least > most:
-            best, most = at, least
-    if best is None:
-        raise ConfigError(
-            f"no place was found before robot {robot.name!r} where its tool can stand upright on the surface: give one"
-            " by surface.pose, for example surface.pose.xyz=[0.5,0,0.1]"
-        )
-    return best
+    for shares, heights in ((_FORWARD, _HEIGHT), _NEARER):
+        best, most = None, 0.0
+        for share, height in itertools.product(shares, heights):
+            at = length * (share * direction + np.array([0.0, 0.0, height]))
+            least = min(free(at, step) for step in _AROUND)
+            if least > most:
+                best, most = at, least
+        if best is not None:
+            return best
+    raise ConfigError(
+        f"no place was found before robot {robot.name!r} where its tool can stand upright on the surface: give one by"
+        " surface.pose, for example surface.pose.xyz=[0.5,0,0.1]"
+    )
 
 
 def toolpath_of(task: TaskParts, surface: SurfaceGeometry, robot: Robot) -> Toolpath:

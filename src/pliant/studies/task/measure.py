@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -14,6 +15,7 @@ from pliant.surfaces import SurfaceGeometry
 from pliant.telemetry import metrics as of
 from pliant.telemetry.contact_metrics import break_share
 from pliant.telemetry.log import Log
+from pliant.telemetry.steadiness import largest_line, swing
 from pliant.telemetry.summary import Metric
 
 _LANDING = 0.2  # s after the first contact that still count as landing
@@ -60,6 +62,12 @@ def _landing_peak(s: TaskSignals) -> float:
     return of.peak(s.force[of.between(s.time, first, first + _LANDING)])
 
 
+def _steady(s: TaskSignals, share: Callable[[Array, Array, float], float]) -> float:
+    """% of the wanted force; NaN where it does not stand still for long enough."""
+    force, wanted = s.force[s.following], s.wanted[s.following]
+    return 100.0 * share(force, wanted, float(np.median(np.diff(s.time))))
+
+
 MEASURES: Mapping[str, Measure] = {
     "force_error": Measure(
         "N", "mean |force − wanted| along the true normal, on the path",
@@ -74,6 +82,14 @@ MEASURES: Mapping[str, Measure] = {
     "contact_lost": Measure(
         "%", "share of the path without contact", lambda s: 100.0 * break_share(s.force[s.following]), True
     ),
+    "force_swing": Measure(
+        "%", "largest standard deviation of the force, of the wanted one, in whole seconds in which that stands still",
+        lambda s: _steady(s, swing), True,
+    ),
+    "force_line": Measure(
+        "%", "largest line of the force's spectrum, 2 to 100 Hz, of the wanted force, in the same seconds",
+        lambda s: _steady(s, largest_line), True,
+    ),
     "path_error": Measure(
         "mm", "mean distance from the path, in the true tangent plane",
         lambda s: 1e3 * float(np.mean(s.beside[s.following])),
@@ -86,6 +102,7 @@ MEASURES: Mapping[str, Measure] = {
     ),
 }  # fmt: skip
 """name → metric; names that `accept` can bound"""
+_STEADY = ("force_swing", "force_line")
 WORST = tuple(name for name, measure in MEASURES.items() if measure.worst)
 
 
@@ -97,12 +114,15 @@ def check_accept(accept: Mapping[str, float]) -> None:
 
 
 def measured(signals: TaskSignals, accept: Mapping[str, float]) -> tuple[Metric, ...]:
-    """All metrics, with the bound that the task puts on them; none if the run ended before the path began."""
+    """All metrics, with the bound that the task puts on them; none if the run ended before the path began.
+
+    Those of steadiness are left out where the wanted force does not stand still for long enough and nobody asks.
+    """
     if not np.any(signals.following):
         return ()
-    return tuple(
-        Metric(name, about.of(signals), about.unit, target=accept.get(name)) for name, about in MEASURES.items()
-    )
+    found = {name: about.of(signals) for name, about in MEASURES.items()}
+    told = [name for name, value in found.items() if name in accept or name not in _STEADY or not math.isnan(value)]
+    return tuple(Metric(name, found[name], MEASURES[name].unit, target=accept.get(name)) for name in told)
 
 
 def signals_of(log: Log, frame: str, surface: SurfaceGeometry, torque_limits: Array) -> TaskSignals:

@@ -1,0 +1,69 @@
+"""What `pliant list controllers NAME` says, and that it is so."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import pliant
+from pliant.cli.app import app
+from pliant.experiments.origins import leaves
+from pliant.robots import CATALOGUE
+from pliant.wiring.domains import HOLDS, trials
+from pliant.wiring.registry import controllers
+
+CLI = CliRunner(env={"COLUMNS": "400"})
+_DOMAINS = Path(__file__).parents[2] / "benchmarks" / "domains.py"
+_TEMPLATE = Path(pliant.__file__).with_name("templates") / "controller.py"
+
+
+@pytest.mark.parametrize("name", controllers())
+def test_every_parameter_has_its_line(name: str) -> None:
+    told = CLI.invoke(app, ["list", "controllers", name])
+    assert told.exit_code == 0
+    keys = [".".join(path) for path, *_ in leaves(controllers()[name].default)]
+    assert keys
+    assert [key for key in keys if f" {key} " not in told.stdout] == []
+
+
+def test_a_controller_without_a_name_is_told_too() -> None:
+    told = CLI.invoke(app, ["list", "controllers", f"{_TEMPLATE}:MyController"])
+    assert told.exit_code == 0, told.output
+    assert " stiffness " in told.stdout
+    assert "was not measured" in told.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["list", "controllers", "hapti"], "'haptic'"),
+        (["list", "robots", "panda"], "`pliant doctor NAME`"),
+        (["list", "studies", "stack"], "of controllers alone"),
+    ],
+)
+def test_other_names_are_refused_in_a_sentence(words: list[str], said: str) -> None:
+    told = CLI.invoke(app, words)
+    assert told.exit_code == 2
+    assert said in told.output
+    assert "Traceback" not in told.output
+
+
+def test_trials_are_of_what_there_is_and_once() -> None:
+    cells = [(one.controller, one.robot, one.stiffness, one.delay) for one in trials()]
+    assert len(set(cells)) == len(cells)
+    assert {one.controller for one in trials()} == set(controllers())
+    assert {one.robot for one in trials()} <= set(CATALOGUE)
+
+
+@pytest.mark.parametrize(("name", "holds"), [("offset-free-mpc", True), ("classical-mpc", False)])
+def test_what_is_told_can_be_found_again(name: str, holds: bool) -> None:
+    trial = next(one for one in trials() if one.controller == name and (one.verdict == HOLDS) is holds)
+    spec = importlib.util.spec_from_file_location("domains_command", _DOMAINS)
+    assert spec is not None
+    assert spec.loader is not None
+    command = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(command)
+    assert command.run(trial.controller, trial.robot, trial.stiffness, trial.delay) == trial.verdict
