@@ -37,7 +37,7 @@ def suggest_stack(robot: Robot, config: StackConfig, believed: Believed) -> Stac
     for place, frame in enumerate(believed.frames):
         label = "ee" if place == 0 else frame
         tasks[label] = _later(_task(first if place == 0 else other, frame, believed, robot.n), late)
-    update = {"tasks": tasks, "gravity_compensation": believed.compensation == "none"}
+    update: dict[str, object] = {"tasks": tasks, "gravity_compensation": believed.compensation == "none"}
     if config.law is Law.SPRING and config.joint_damping == 0.0:
         update["joint_damping"] = min(SAFE_PHASE * _lightest(robot) / late, _MOST_DAMPING)
     return config.model_copy(update=update)
