@@ -38,7 +38,7 @@ def print_controller(console: Console, entry: ControllerEntry[Any]) -> None:
     if found:
         _print_domain(console, found)
     else:
-        console.print(f"where {entry.name} holds was not measured", markup=False)
+        console.print(f"where {entry.name} holds was not measured", markup=False, highlight=False, soft_wrap=True)
 
 
 def _parameters(entry: ControllerEntry[Any]) -> Table:
