@@ -109,13 +109,44 @@ class SampledMesh {
     return for_each_row(points, [this](const Vec3& p) { return pliant::contact::nearest(*mesh_, field_, band_, p); });
   }
 
-  const Field* field() const { return &field_; }
+  const Form* form() const { return &form_; }
 
  private:
   std::vector<double> values_;
   double band_;
   const Mesh* mesh_;
   Field field_;
+  Form form_{ShapeType::kField, &field_};
+};
+
+// A hole or an edge, in its own axes.
+class Solid {
+ public:
+  explicit Solid(const Form& form) : form_(form) {}
+
+  static Solid hole(double radius, double depth, double chamfer) {
+    if (!(radius > 0.0 && chamfer >= 0.0 && depth > chamfer))
+      throw std::invalid_argument("a hole needs radius > 0 and depth > chamfer >= 0");
+    return Solid({ShapeType::kHole, nullptr, {radius, depth, chamfer}});
+  }
+
+  static Solid edge(double angle, double rounding) {
+    if (!(angle > 0.0 && angle < 3.14 && rounding >= 0.0))
+      throw std::invalid_argument("an edge needs an angle between 0 and pi and rounding >= 0");
+    return Solid({ShapeType::kEdge, nullptr, {}, {angle, rounding}});
+  }
+
+  auto nearest(const Constants& points) const {
+    return for_each_row(points, [this](const Vec3& p) {
+      const Distance found = form_.at(p);
+      return MeshPlace{found.value, p - found.value * found.gradient, found.gradient};
+    });
+  }
+
+  const Form* form() const { return &form_; }
+
+ private:
+  Form form_;
 };
 
 // The contacts of one MuJoCo model and one data. Keeps the Python objects alive that own the memory it looks at.
@@ -143,16 +174,19 @@ class ContactLoop {
     views_.nv = nb::cast<int>(model_.attr("nv"));
   }
 
-  std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material, bool hollow, nb::object field) {
+  std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material, bool hollow, nb::object form,
+                                bool tool) {
     if (geom_a < 0 || geom_b < 0 || geom_a >= views_.ngeom || geom_b >= views_.ngeom)
       throw std::invalid_argument("a contact pair names a geom that the model does not have");
     require_size(material.size(), kMaterialSize, "material");
     const double* m = material.data();
     const Material made{m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]};
-    const Field* samples = field.is_none() ? nullptr : nb::cast<const SampledMesh&>(field).field();
-    const int first = world_.add_pair(views_, geom_a, geom_b, made, hollow, samples);
+    const Form* surface = form.is_none()                ? nullptr
+                          : nb::isinstance<Solid>(form) ? nb::cast<const Solid&>(form).form()
+                                                        : nb::cast<const SampledMesh&>(form).form();
+    const int first = world_.add_pair(views_, geom_a, geom_b, made, hollow, surface, tool);
     if (first < 0) throw std::invalid_argument("no contact law for this pair of shapes in this order");
-    fields_.push_back(std::move(field));
+    forms_.push_back(std::move(form));
     return {first, world_.slots() - first};
   }
 
@@ -187,7 +221,7 @@ class ContactLoop {
   }
 
   nb::object model_, data_;
-  std::vector<nb::object> fields_;
+  std::vector<nb::object> forms_;
   Views views_{};
   World world_;
   HalfStep step1_, step2_;
@@ -200,6 +234,7 @@ class ContactLoop {
 NB_MODULE(_contact, m) {
   nb::set_leak_warnings(false);  // surfaces that a cache keeps until Python ends are no leak
   m.attr("BRISTLE_SIZE") = kBristleSize;
+  m.attr("RIM") = kRim;
   nb::list material;
   for (const char* name : kMaterialNames) material.append(nb::str(name));
   m.attr("MATERIAL") = nb::tuple(material);
@@ -210,10 +245,14 @@ NB_MODULE(_contact, m) {
       .def(nb::init<const TriangleMesh&, const Constants&, double, const Constants&, double>(), nb::keep_alive<1, 2>(),
            "mesh"_a, "low"_a, "step"_a, "values"_a, "band"_a)
       .def("nearest", &SampledMesh::nearest, "points"_a);
+  nb::class_<Solid>(m, "Solid")
+      .def_static("hole", &Solid::hole, "radius"_a, "depth"_a, "chamfer"_a)
+      .def_static("edge", &Solid::edge, "angle"_a, "rounding"_a)
+      .def("nearest", &Solid::nearest, "points"_a);
   nb::class_<ContactLoop>(m, "ContactLoop")
       .def(nb::init<nb::object, nb::object, uintptr_t, uintptr_t>(), "model"_a, "data"_a, "step1"_a, "step2"_a)
       .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a, "hollow"_a = false,
-           "field"_a = nb::none())
+           "form"_a = nb::none(), "tool"_a = false)
       .def_prop_ro("slots", &ContactLoop::slots)
       .def("evaluate", &ContactLoop::evaluate, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
            "point"_a.noconvert(), "penetration"_a.noconvert())

@@ -19,6 +19,15 @@ struct Material {
   double tangential_damping;    // N s/m of the bristle
 };
 
+// The material of one of several points that press together.
+inline Material shared(Material m, double share) {
+  m.stiffness *= share;
+  m.damping *= share;
+  m.tangential_stiffness *= share;
+  m.tangential_damping *= share;
+  return m;
+}
+
 // Names of the fields in their order, for who fills a Material from a row of numbers.
 constexpr const char* kMaterialNames[] = {
     "stiffness",  "damping",           "transition",           "mu_static",

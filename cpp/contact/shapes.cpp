@@ -12,11 +12,6 @@ constexpr double kTiny = 1e-12;
 // The part of a vector that is perpendicular to a unit axis.
 Vec3 across(const Vec3& v, const Vec3& axis) { return v - dot(v, axis) * axis; }
 
-struct Ball {  // what A presents to B: a centre and a radius (zero for a box corner)
-  Vec3 centre;
-  double radius;
-};
-
 Touch against_plane(const Ball& ball, const Shape& plane) {
   const Vec3 normal = plane.rotation.column(2);
   const double gap = dot(normal, ball.centre - plane.position) - ball.radius;
@@ -41,10 +36,10 @@ Touch against_cylinder(const Ball& ball, const Shape& cylinder) {
 }
 
 // Outside the samples there is nothing to touch; a place that is no number stays one.
-Touch against_field(const Ball& ball, const Shape& part) {
+Touch against_form(const Ball& ball, const Shape& part) {
   constexpr double kFar = 1.0;  // m
   const Vec3 up = part.rotation.column(2);
-  const Distance found = part.field->at(part.rotation.to_local(ball.centre - part.position));
+  const Distance found = part.form->at(part.rotation.to_local(ball.centre - part.position));
   if (!found.known) return {ball.centre, up, -kFar + 0.0 * dot(ball.centre, ball.centre)};
   const double length = norm(found.gradient);
   const Vec3 normal = length > kTiny ? part.rotation.to_world((1.0 / length) * found.gradient) : up;
@@ -121,16 +116,15 @@ double nearest_on_segment(const Vec3& a, const Vec3& d, const Vec3& half) {
 
 Ball ball_of_sphere(const Shape& a) { return {a.position, a.size.x}; }
 
-Ball ball_of_corner(const Shape& a, int corner) {
-  const Vec3 local{(corner & 1 ? 1.0 : -1.0) * a.size.x, (corner & 2 ? 1.0 : -1.0) * a.size.y,
-                   (corner & 4 ? 1.0 : -1.0) * a.size.z};
-  return {a.position + a.rotation.to_world(local), 0.0};
+// A form without ends: what has no nearest point on a capsule's axis in closed form.
+bool open_form(ShapeType type) {
+  return type == ShapeType::kField || type == ShapeType::kHole || type == ShapeType::kEdge;
 }
 
 // The point of a capsule's axis that matters for B, with the capsule's radius.
 Ball ball_of_capsule(const Shape& a, const Shape& b, int slot) {
   const Vec3 half_axis = a.size.y * a.rotation.column(2);
-  if (b.type == ShapeType::kPlane || b.type == ShapeType::kField || b.hollow)
+  if (b.type == ShapeType::kPlane || open_form(b.type) || b.hollow)
     return {slot == 0 ? a.position - half_axis : a.position + half_axis, a.size.x};
   const Vec3 start = a.position - half_axis;
   const Vec3 along = 2.0 * half_axis;
@@ -152,7 +146,7 @@ Ball ball_of_capsule(const Shape& a, const Shape& b, int slot) {
 int slot_count(ShapeType a, ShapeType b, bool hollow) {
   const bool round = b == ShapeType::kSphere || b == ShapeType::kCylinder;
   if (hollow && !round) return 0;
-  const bool open = b == ShapeType::kPlane || b == ShapeType::kField;
+  const bool open = b == ShapeType::kPlane || open_form(b);
   if (!round && !open && b != ShapeType::kBox) return 0;
   if (a == ShapeType::kSphere) return 1;
   if (a == ShapeType::kCapsule) return open || hollow ? 2 : 1;
@@ -160,19 +154,14 @@ int slot_count(ShapeType a, ShapeType b, bool hollow) {
   return 0;
 }
 
-Touch touch(const Shape& a, const Shape& b, int slot) {
-  Ball ball{};
-  switch (a.type) {
-    case ShapeType::kBox:
-      ball = ball_of_corner(a, slot);
-      break;
-    case ShapeType::kCapsule:
-      ball = ball_of_capsule(a, b, slot);
-      break;
-    default:
-      ball = ball_of_sphere(a);
-      break;
-  }
+Vec3 corner_of(const Shape& box, int corner) {
+  const Vec3 local{(corner & 1 ? 1.0 : -1.0) * box.size.x, (corner & 2 ? 1.0 : -1.0) * box.size.y,
+                   (corner & 4 ? 1.0 : -1.0) * box.size.z};
+  return box.position + box.rotation.to_world(local);
+}
+
+Touch touch_ball(const Ball& ball, const Shape& b) {
+  if (b.form) return against_form(ball, b);
   switch (b.type) {
     case ShapeType::kPlane:
       return against_plane(ball, b);
@@ -180,10 +169,19 @@ Touch touch(const Shape& a, const Shape& b, int slot) {
       return against_sphere(ball, b);
     case ShapeType::kCylinder:
       return against_cylinder(ball, b);
-    case ShapeType::kField:
-      return against_field(ball, b);
     default:
       return against_box(ball, b);
+  }
+}
+
+Touch touch(const Shape& a, const Shape& b, int slot) {
+  switch (a.type) {
+    case ShapeType::kBox:
+      return touch_ball({corner_of(a, slot), 0.0}, b);
+    case ShapeType::kCapsule:
+      return touch_ball(ball_of_capsule(a, b, slot), b);
+    default:
+      return touch_ball(ball_of_sphere(a), b);
   }
 }
 

@@ -10,17 +10,13 @@ namespace {
 constexpr double kFastest = 1e4;    // m/s or rad/s
 constexpr double kStrongest = 1e7;  // N
 
-ShapeType type_of(const Views& v, int geom, const Field* field) {
-  return field ? ShapeType::kField : static_cast<ShapeType>(v.geom_type[geom]);
-}
-
-Shape shape_of(const Views& v, int geom, bool hollow = false, const Field* field = nullptr) {
-  return {type_of(v, geom, field),
+Shape shape_of(const Views& v, int geom, bool hollow = false, const Form* form = nullptr) {
+  return {form ? form->type : static_cast<ShapeType>(v.geom_type[geom]),
           load(v.geom_size + 3 * geom),
           load(v.geom_position + 3 * geom),
           Rotation{v.geom_rotation + 9 * geom},
           hollow,
-          field};
+          form};
 }
 
 Vec3 point_velocity(const Views& v, int body, const Vec3& point) {
@@ -44,12 +40,14 @@ bool velocities_sound(const Views& v) {
 
 }  // namespace
 
-int World::add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow,
-                    const Field* field) {
-  const int slots = slot_count(type_of(views, geom_a, nullptr), type_of(views, geom_b, field), hollow);
+int World::add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow, const Form* form,
+                    bool tool) {
+  const ShapeType a = static_cast<ShapeType>(views.geom_type[geom_a]);
+  const Shape b = shape_of(views, geom_b, hollow, form);
+  const int slots = tool ? tool_slots(a, b) : slot_count(a, b.type, hollow);
   if (slots == 0) return -1;
   const int first = slots_;
-  pairs_.push_back({geom_a, geom_b, material, hollow, field, first, slots});
+  pairs_.push_back({geom_a, geom_b, material, hollow, form, tool, first, slots});
   slots_ += slots;
   return first;
 }
@@ -58,17 +56,18 @@ bool World::evaluate(const Views& v, double dt, const double* push, double* bris
   std::memcpy(v.body_force, push, sizeof(double) * 6 * static_cast<size_t>(v.nbody));
   bool sound = true;
   for (const Pair& pair : pairs_) {
-    const Shape a = shape_of(v, pair.geom_a), b = shape_of(v, pair.geom_b, pair.hollow, pair.field);
+    const Shape a = shape_of(v, pair.geom_a), b = shape_of(v, pair.geom_b, pair.hollow, pair.form);
     const int body_a = v.geom_body[pair.geom_a], body_b = v.geom_body[pair.geom_b];
     for (int i = 0; i < pair.slots; ++i) {
       const int slot = pair.first_slot + i;
       Bristle& bristle = *reinterpret_cast<Bristle*>(bristles + kBristleSize * slot);
-      const Touch t = touch(a, b, i);
+      const Touch t = pair.tool ? touch_tool(a, b, i) : touch(a, b, i);
       Vec3 force{};
       if (t.penetration > 0.0) {
+        const Material felt = pair.tool ? shared(pair.material, share_of(a.type, b, i)) : pair.material;
         const Vec3 velocity = point_velocity(v, body_a, t.point) - point_velocity(v, body_b, t.point);
-        const double pressing = normal_force(pair.material, t.penetration, -dot(t.normal, velocity));
-        force = pressing * t.normal + friction_force(pair.material, t.normal, pressing, velocity, dt, bristle);
+        const double pressing = normal_force(felt, t.penetration, -dot(t.normal, velocity));
+        force = pressing * t.normal + friction_force(felt, t.normal, pressing, velocity, dt, bristle);
         add_force(v, body_a, t.point, force);
         add_force(v, body_b, t.point, -force);
       } else {

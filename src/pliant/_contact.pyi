@@ -10,6 +10,9 @@ from pliant.spatial import Array
 BRISTLE_SIZE: int
 """doubles of state per contact point: deflection (3) m, friction coefficient, sliding (0 or 1)"""
 
+RIM: int
+"""contact points of each rim of a cylinder, and of a hole's mouth"""
+
 MATERIAL: tuple[str, ...]
 """names of the numbers in `material`"""
 
@@ -39,6 +42,22 @@ class SampledMesh:
         """Signed distance (k,) m, and place (k, 3) m and outward unit normal (k, 3) of the smooth surface, for points
         (k, 3)."""
 
+class Solid:
+    """A solid in closed form, in its own axes."""
+
+    @staticmethod
+    def hole(radius: float, depth: float, chamfer: float) -> Solid:
+        """A block with a round hole along −z of its face z = 0, bevelled by 45° at the mouth; m. Raises ValueError:
+        sizes that no hole has."""
+
+    @staticmethod
+    def edge(angle: float, rounding: float) -> Solid:
+        """Two half planes that meet at a line along x, z = 0 towards −y and one that comes down; rad of the material,
+        m. Raises ValueError: an angle that is not between 0 and π, or a rounding below zero."""
+
+    def nearest(self, points: Array) -> tuple[Array, Array, Array]:
+        """Signed distance (k,) m, and place (k, 3) m and outward unit normal (k, 3), for points (k, 3)."""
+
 class ContactLoop:
     """Contacts of one MuJoCo model and data, and the loop of mj_step1, forces, mj_step2.
 
@@ -48,11 +67,18 @@ class ContactLoop:
 
     def __init__(self, model: Any, data: Any, step1: int, step2: int) -> None: ...
     def add_pair(
-        self, geom_a: int, geom_b: int, material: Array, hollow: bool = False, field: SampledMesh | None = None
+        self,
+        geom_a: int,
+        geom_b: int,
+        material: Array,
+        hollow: bool = False,
+        form: SampledMesh | Solid | None = None,
+        tool: bool = False,
     ) -> tuple[int, int]:
         """Adds a pair of geoms; material (8,) in the order of `ContactMaterial`. Returns its first slot and its number
-        of slots. `hollow`: the material of the second, a sphere or a cylinder, is outside of it. `field`: the surface
-        of the second, in its axes; None: its own shape.
+        of slots. `hollow`: the material of the second, a sphere or a cylinder, is outside of it. `form`: the surface
+        of the second, in its axes; None: its own shape. `tool`: the first is a cylinder or a box whose points share
+        the material.
 
         Raises ValueError: an unknown geom, or shapes that are not supported in this order.
         """

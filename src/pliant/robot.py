@@ -15,7 +15,7 @@ from pliant.robots.assembly import assemble
 from pliant.robots.locking import lock
 from pliant.robots.rotors import Rotors
 from pliant.robots.tool import Tool as Tool
-from pliant.robots.tool import with_rod
+from pliant.robots.tool import ToolBody, with_rod
 from pliant.spatial import Array, is_rotation
 
 _WORLD = "universe"
@@ -40,6 +40,8 @@ class Robot:
     """file that it was read from"""
     contact_radius: Mapping[str, float] = field(default_factory=dict)
     """frame → radius in m of the sphere with which that frame touches things"""
+    contact_bodies: Mapping[str, ToolBody] = field(default_factory=dict)
+    """frame → the cylinder or box with which it touches things, at several points"""
     home_from: str = "given"
     """where the home comes from"""
     rotors_from: str = ""
@@ -231,15 +233,18 @@ class Robot:
             raise ConfigError(f"the contact radius of frame {frame!r} must be above zero, got {radius}")
         return replace(self, contact_radius=dict(self.contact_radius) | {frame: radius})
 
+    def touching_with(self, tool: Tool) -> Robot:
+        """The robot, which has the tool's frame, with the tool's shape touching things."""
+        bodies = dict(self.contact_bodies) | ({tool.frame: tool.body} if tool.body else {})
+        return replace(self, contact_bodies=bodies) if tool.body else self.with_contact(tool.frame, tool.radius)
+
     def with_tool(self, tool: Tool) -> Robot:
-        """The robot with a rod on its flange; adds its inertia and its contact frame."""
+        """The robot with a tool on its flange; adds its inertia, looks and contact frame."""
         tool.check()
         robot = self.with_frame(tool.frame, tool.parent, (0.0, 0.0, tool.length))
         carrier = robot.model.frames[robot.frame_id(tool.parent)]
         middle = carrier.placement * pin.SE3(np.eye(3), np.array([0.0, 0.0, tool.length / 2]))
-        model = robot.model
         if tool.mass > 0.0:
-            rod = pin.Inertia.FromCylinder(tool.mass, tool.radius, tool.length)
-            model.appendBodyToJoint(carrier.parentJoint, rod, middle)
+            robot.model.appendBodyToJoint(carrier.parentJoint, tool.inertia, middle)
         visual = with_rod(robot.visual, carrier, robot.frame_id(tool.parent), middle, tool)
-        return replace(robot, model=model, visual=visual)
+        return replace(robot, visual=visual)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.spatial import exp3
-from pliant.surfaces import CylinderSurface, PlaneSurface, SphereSurface, SurfaceGeometry
+from pliant.surfaces import CylinderSurface, EdgeSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 
 R = exp3([0.4, -0.7, 0.3])
 ORIGIN = np.array([0.5, -0.1, 0.2])
@@ -19,6 +19,8 @@ SURFACES: list[SurfaceGeometry] = [
     CylinderSurface(ORIGIN, R, 0.15, hollow=True),
     SphereSurface(ORIGIN, R, 0.2),
     SphereSurface(ORIGIN, R, 0.2, hollow=True),
+    EdgeSurface(ORIGIN, R, 1.4, 0.03),
+    EdgeSurface(ORIGIN, R, 2.5, 0.05),
 ]
 EACH = pytest.mark.parametrize("surface", SURFACES, ids=lambda s: f"{type(s).__name__}{getattr(s, 'hollow', '')}")
 

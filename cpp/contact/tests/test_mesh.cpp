@@ -87,7 +87,8 @@ void run_ball() {
   Samples samples(33);
   samples.fill([&](const Vec3& p) { return cube.nearest(p).distance; });
   const double identity[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const Shape part{ShapeType::kField, {}, {10.0, 0.0, 0.0}, Rotation{identity}, false, &samples.field};
+  const Form form{ShapeType::kField, &samples.field};
+  const Shape part{ShapeType::kField, {}, {10.0, 0.0, 0.0}, Rotation{identity}, false, &form};
   Shape ball{ShapeType::kSphere, {0.2, 0.0, 0.0}, {10.1, 0.2, 1.15}, Rotation{identity}, false};
   const int before = allocations;
   const Touch found = touch(ball, part, 0);

@@ -50,12 +50,13 @@ struct Results {
 };
 
 // Every pair that has contact points, at random places: unit normals, equal and opposite forces, nothing from the heap.
-void run_pair(ShapeType a, ShapeType b, bool hollow) {
+void run_pair(ShapeType a, ShapeType b, bool hollow, const Form* form = nullptr, bool tool = false) {
   Scene scene(a, b);
   World world;
   const Views views = scene.views();
-  const int first = world.add_pair(views, 0, 1, kSteel, hollow);
-  check((first < 0) == (slot_count(a, b, hollow) == 0), "a pair without contact points is refused", "pair");
+  const int first = world.add_pair(views, 0, 1, kSteel, hollow, form, tool);
+  check(tool || (first < 0) == (slot_count(a, form ? form->type : b, hollow) == 0),
+        "a pair without contact points is refused", "pair");
   if (first < 0) return;
   Results results(world.slots());
   std::vector<double> push(12, 0.0);
@@ -100,6 +101,22 @@ void run_known_force() {
   check(!world.evaluate(views, 1e-4, push.data(), results.bristles.data(), results.out()), "NaN is found", "plane");
 }
 
+// A tool flat on a plane, 1 mm deep: its end is as stiff as the material, and its points press alike.
+void run_tool() {
+  for (ShapeType type : {ShapeType::kCylinder, ShapeType::kBox}) {
+    Scene scene(type, ShapeType::kPlane);
+    scene.position[2] = scene.centre[2] = 0.099;
+    World world;
+    const Views views = scene.views();
+    world.add_pair(views, 0, 1, kSteel, false, nullptr, true);
+    Results results(world.slots());
+    const std::vector<double> push(12, 0.0);
+    world.evaluate(views, 1e-4, push.data(), results.bristles.data(), results.out());
+    check(std::fabs(scene.force[2] - 10.0) < 1e-9, "1 mm of 1e4 N/m is 10 N", "tool");
+    for (int i = 0; i < 6; ++i) check(i == 2 || std::fabs(scene.force[i]) < 1e-9, "and nothing else", "tool");
+  }
+}
+
 // The loop stops where the engine blows up, and says after how many steps.
 int steps_taken = 0;
 void half_step(const void*, void*) {}
@@ -130,6 +147,15 @@ void run() {
   for (ShapeType a : all)
     for (ShapeType b : all)
       for (bool hollow : {false, true}) run_pair(a, b, hollow);
+  const Form hole{ShapeType::kHole, nullptr, {0.15, 0.2, 0.02}}, edge{ShapeType::kEdge, nullptr, {}, {1.3, 0.02}};
+  for (const Form* form : {&hole, &edge}) {
+    for (ShapeType a : all) run_pair(a, ShapeType::kSphere, false, form);
+    for (ShapeType a : {ShapeType::kCylinder, ShapeType::kBox}) run_pair(a, ShapeType::kSphere, false, form, true);
+  }
+  for (ShapeType a : all)
+    for (ShapeType b : all)
+      for (bool hollow : {false, true}) run_pair(a, b, hollow, nullptr, true);
+  run_tool();
   run_known_force();
   run_loop();
 }

@@ -11,6 +11,7 @@ import numpy as np
 from pliant.errors import ConfigError
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
+from pliant.robots.tool import ToolBody
 from pliant.simulation.contact.pairs import PairOfGeoms
 from pliant.simulation.contact.recipe import add_pair, apply_surface
 from pliant.simulation.joint_effects import JointEffects
@@ -32,8 +33,13 @@ class WorldParts:
     @property
     def touching_geoms(self) -> Mapping[str, str]:
         """Geom of the robot that can touch things → the frame at which its contact counts."""
-        parts = {f"touch:{frame}": frame for frame in self.robot.contact_radius}
+        parts = {f"touch:{frame}": frame for frame in (*self.robot.contact_radius, *self.robot.contact_bodies)}
         return parts | {f"along:{link.start}": link.start for link in self.links}
+
+    @property
+    def tools(self) -> frozenset[str]:
+        """Those of these geoms that touch with several points."""
+        return frozenset(f"touch:{frame}" for frame in self.robot.contact_bodies)
 
     def compile(self, physics_step: float, pairs: Sequence[PairOfGeoms]) -> mujoco.MjModel:
         """The model; contacts of an explicit law are switched off in it.
@@ -45,6 +51,12 @@ class WorldParts:
         Raises:
             ConfigError: MuJoCo cannot build it, or the step is too long for a contact.
         """
+        if self.tools and self.scene.contact == "mujoco":
+            frame, body = next(iter(self.robot.contact_bodies.items()))
+            raise ConfigError(
+                f"tool {frame!r} is a {body.shape}, whose points share a stiffness, which MuJoCo's contacts cannot: set"
+                " contact = 'explicit'"
+            )
         spec = spec_from_robot(self.robot)
         spec.option.timestep = physics_step
         spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
@@ -73,6 +85,8 @@ class WorldParts:
                 name=f"touch:{frame}", type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=site.pos
             )
             geom.contype, geom.conaffinity, geom.mass, geom.rgba = 0, 0, 0.0, [0.20, 0.22, 0.25, 1.0]
+        for frame, body in self.robot.contact_bodies.items():
+            _add_body(spec, frame, body, seen=self.robot.visual is None)
         for link in self.links:
             link.add_to(spec, f"along:{link.start}")
         for thing in self.scene.things:
@@ -92,6 +106,23 @@ class WorldParts:
             joint.damping = [damping[index], 0.0, 0.0]
             if self.joints.compensation == "gravity":
                 spec.body(name).gravcomp = 1.0
+
+
+def _add_body(spec: mujoco.MjSpec, frame: str, body: ToolBody, seen: bool) -> None:
+    """What of a tool touches, behind its frame. Args: seen: whether it is drawn; the robot's looks show it already."""
+    site = spec.site(frame)
+    R = np.zeros(9)
+    mujoco.mju_quat2Mat(R, np.asarray(site.quat, dtype=np.float64))
+    cylinder = body.shape == "cylinder"
+    geom = site.parent.add_geom(
+        name=f"touch:{frame}",
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER if cylinder else mujoco.mjtGeom.mjGEOM_BOX,
+        size=[body.half[0], body.half[2], 0.0] if cylinder else list(body.half),
+        pos=np.asarray(site.pos) - body.half[2] * R.reshape(3, 3)[:, 2],
+        quat=site.quat,
+    )
+    geom.contype, geom.conaffinity, geom.mass = 0, 0, 0.0
+    geom.rgba = [0.20, 0.22, 0.25, 1.0] if seen else [0, 0, 0, 0]
 
 
 def _add_light(spec: mujoco.MjSpec) -> None:

@@ -1,4 +1,5 @@
-"""A fixed workpiece: a rod, the wall of a pipe, a dome, a bowl, or a part given by triangles."""
+"""A fixed workpiece: a rod, the wall of a pipe, a dome, a bowl, a plate with a hole, an edge, or a part given by
+triangles."""
 
 from __future__ import annotations
 
@@ -9,11 +10,13 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from pliant._contact import SampledMesh, Solid
 from pliant.errors import ConfigError
 from pliant.mujoco_model import VISUAL_GROUP
+from pliant.simulation.part_looks import Integers, edge_triangles, hole_triangles
 from pliant.simulation.surface import Surface
-from pliant.spatial import quaternion
-from pliant.surfaces import CylinderSurface, MeshSurface, SphereSurface
+from pliant.spatial import Array, quaternion
+from pliant.surfaces import CylinderSurface, EdgeSurface, HoleSurface, MeshSurface, SphereSurface
 
 WOOD = (0.78, 0.70, 0.60, 1.0)
 _ENDLESS = 3.0  # m, half length of MuJoCo's cylinder, beyond any arm's reach; more would take the near out of pictures
@@ -23,29 +26,43 @@ _SEEN_THROUGH = 0.35  # opacity of what the tool works inside of
 
 @dataclass(frozen=True)
 class Part:
-    """A cylinder, a sphere or a mesh that cannot move and gives way like a spring and a damper along its normal.
+    """A cylinder, a sphere, a hole, an edge or a mesh that cannot move and gives way like a spring and a damper along
+    its normal.
 
     Raises:
         ConfigError: on construction, when the half length that is drawn is not above zero.
     """
 
     name: str
-    geometry: CylinderSurface | SphereSurface | MeshSurface
-    """where its surface is; a hollow one (touched from within) and a mesh need the explicit contact law"""
+    geometry: CylinderSurface | SphereSurface | MeshSurface | HoleSurface | EdgeSurface
+    """where its surface is; a hollow one (touched from within), a hole, an edge and a mesh need the explicit law"""
     surface: Surface = field(default_factory=Surface)
     length: float = 0.25
-    """m, half of what is drawn of a cylinder; the contact has no ends (MuJoCo's: none within 3 m)"""
+    """m, half of what is drawn of a cylinder, an edge or the face round a hole; the contact has no ends (MuJoCo's: none
+    within 3 m)"""
     rgba: tuple[float, float, float, float] = WOOD
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.length) and self.length > 0.0):
             raise ConfigError(f"the drawn half length of part {self.name!r} must be above zero (m), got {self.length}")
 
+    @property
+    def hollow(self) -> bool:
+        """Whether it is a round part that is touched from within."""
+        return isinstance(self.geometry, CylinderSurface | SphereSurface) and self.geometry.hollow
+
+    @property
+    def form(self) -> SampledMesh | Solid | None:
+        """Its surface, in its axes, where that is none of MuJoCo's shapes."""
+        if isinstance(self.geometry, MeshSurface):
+            return self.geometry.distance.samples
+        return self.geometry.solid if isinstance(self.geometry, HoleSurface | EdgeSurface) else None
+
     def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
         """Adds the shape that touches (invisible) and one that shows it. Returns the geom that touches."""
         place = {"pos": self.geometry.origin, "quat": quaternion(self.geometry.rotation)}
-        if isinstance(self.geometry, MeshSurface):
-            look = _mesh_look(spec, self.name, self.geometry, place)
+        if not isinstance(self.geometry, CylinderSurface | SphereSurface):
+            look = _mesh_look(spec, self.name, *_triangles(self.geometry, self.length), place)
             touching = spec.worldbody.add_geom(
                 name=self.name, type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[_FRAME, 0.0, 0.0], **place
             )
@@ -68,12 +85,20 @@ class Part:
         return look, spec.worldbody.add_geom(name=self.name, type=kind, size=size, **place)
 
 
-def _mesh_look(spec: mujoco.MjSpec, name: str, geometry: MeshSurface, place: dict[str, Any]) -> mujoco.MjsGeom:
-    triangles = geometry.distance.triangles
+def _triangles(geometry: MeshSurface | HoleSurface | EdgeSurface, length: float) -> tuple[Array, Integers]:
+    """Corners (nv, 3) m in the part's axes, and which belong together (nt, 3). Args: length: m, half of it."""
+    if isinstance(geometry, MeshSurface):
+        return geometry.distance.triangles.vertices, geometry.distance.triangles.corners
+    return hole_triangles(geometry, length) if isinstance(geometry, HoleSurface) else edge_triangles(geometry, length)
+
+
+def _mesh_look(
+    spec: mujoco.MjSpec, name: str, vertices: Array, corners: Integers, place: dict[str, Any]
+) -> mujoco.MjsGeom:
     mesh = spec.add_mesh(
         name=f"{name}/mesh",
-        uservert=triangles.vertices.astype(np.float32).ravel(),
-        userface=triangles.corners.ravel(),
+        uservert=vertices.astype(np.float32).ravel(),
+        userface=corners.ravel(),
         inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,  # open shells have no volume
     )
     return spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, **place)

@@ -91,8 +91,8 @@ class MujocoPlant(Plant[World]):
         self._limit = robot.torque_limit
         self._fastest = np.full(robot.n, np.inf) if speed_stop is None else speed_stop * robot.velocity_limit
         self.start = robot.vector(robot.home if start is None else start, "start")
-        frames = [*observe, *(s.frame for s in sensors), *(p.frame for p in pushes), *robot.contact_radius]
-        frames += [link.start for link in self.links]
+        frames = [*observe, *(s.frame for s in sensors), *(p.frame for p in pushes)]
+        frames += [*robot.contact_radius, *robot.contact_bodies, *(link.start for link in self.links)]
         for frame in [*frames, *(link.end for link in self.links)]:
             robot.frame_id(frame)
         parts = WorldParts(robot, self.scene, self.joints, self.stops, self.links)
@@ -184,7 +184,7 @@ class MujocoPlant(Plant[World]):
         pairs = pairs_of(scene, parts.touching_geoms)
         self.model = parts.compile(physics_step, pairs)
         self.explicit = (
-            explicit_contacts(self.model, self.start, pairs, scene.hollow, scene.meshes)
+            explicit_contacts(self.model, self.start, pairs, scene.hollow, scene.forms, parts.tools)
             if scene.contact == "explicit"
             else None
         )

@@ -10,13 +10,21 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from pliant._contact import SampledMesh
+from pliant._contact import SampledMesh, Solid
 from pliant.errors import ConfigError, options
 from pliant.mujoco_model import VISUAL_GROUP
 from pliant.simulation.part import WOOD, Part
 from pliant.simulation.surface import Surface
 from pliant.spatial import Array, frame_with_z_along, quaternion, rpy
-from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
+from pliant.surfaces import (
+    CylinderSurface,
+    EdgeSurface,
+    HoleSurface,
+    MeshSurface,
+    PlaneSurface,
+    SphereSurface,
+    SurfaceGeometry,
+)
 
 
 @dataclass(frozen=True)
@@ -138,23 +146,22 @@ class Scene:
             raise ConfigError(
                 f"part {min(self.hollow)!r} is hollow, which MuJoCo's contacts cannot be: set contact = 'explicit'"
             )
-        if self.meshes and self.contact == "mujoco":
+        if self.forms and self.contact == "mujoco":
             raise ConfigError(
-                f"part {min(self.meshes)!r} is a mesh, of which MuJoCo's contacts know the convex hull only: set"
-                " contact = 'explicit'"
+                f"part {min(self.forms)!r} is a mesh, a hole or an edge; MuJoCo's contacts know the convex hull of a"
+                " mesh only: set contact = 'explicit'"
             )
 
     @property
     def hollow(self) -> frozenset[str]:
         """Names of the parts that are touched from within."""
-        parts = [thing for thing in self.things if isinstance(thing, Part)]
-        return frozenset(one.name for one in parts if not isinstance(one.geometry, MeshSurface) and one.geometry.hollow)
+        return frozenset(thing.name for thing in self.things if isinstance(thing, Part) and thing.hollow)
 
     @property
-    def meshes(self) -> Mapping[str, SampledMesh]:
-        """Name of each part that is a mesh → its surface."""
-        parts = [thing for thing in self.things if isinstance(thing, Part)]
-        return {one.name: one.geometry.distance.samples for one in parts if isinstance(one.geometry, MeshSurface)}
+    def forms(self) -> Mapping[str, SampledMesh | Solid]:
+        """Name of each part that is none of MuJoCo's shapes → its surface."""
+        parts = [(thing.name, thing.form) for thing in self.things if isinstance(thing, Part)]
+        return {name: form for name, form in parts if form is not None}
 
     @property
     def faces(self) -> tuple[Plane | Part, ...]:
@@ -172,9 +179,9 @@ def fixed_part(
 
     Args:
         name: of the thing.
-        geometry: a plane, cylinder, sphere or mesh.
+        geometry: a plane, cylinder, sphere, hole, edge or mesh.
         surface: how it feels; None: the defaults of `Surface`.
-        extent: m, half sizes of the part of a plane that is drawn; of a cylinder the first one along its axis.
+        extent: m, half sizes of the part of a plane that is drawn; of other parts the first one is `Part.length`.
 
     Raises:
         ConfigError: another kind of surface.
@@ -184,10 +191,12 @@ def fixed_part(
             x, y, z = geometry.origin.tolist()
             n_x, n_y, n_z = geometry.rotation[:, 2].tolist()
             return Plane(name, (x, y, z), (n_x, n_y, n_z), surface or Surface(), extent, WOOD)
-        case CylinderSurface() | SphereSurface() | MeshSurface():
+        case CylinderSurface() | SphereSurface() | MeshSurface() | HoleSurface() | EdgeSurface():
             return Part(name, geometry, surface or Surface(), extent[0])
         case _:
-            raise ConfigError(f"no contact law for a {type(geometry).__name__}; valid: plane, cylinder, sphere, mesh")
+            raise ConfigError(
+                f"no contact law for a {type(geometry).__name__}; valid: plane, cylinder, sphere, hole, edge, mesh"
+            )
 
 
 def floor(height: float = 0.0, surface: Surface | None = None) -> Plane:

@@ -24,11 +24,14 @@ class Surface:
     """Coulomb coefficient; at rest where the contact law distinguishes"""
     friction_moving: float | None = None
     """Coulomb coefficient while sliding; None: the same"""
+    transition: float = 1e-3
+    """m of penetration over which the force of an explicit contact fades in, [HapFIC] sec. III; below it the contact
+    is softer than its stiffness"""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.stiffness) and self.stiffness > 0.0):
             raise ConfigError(f"contact stiffness must be above zero (N/m), got {self.stiffness}")
-        for name in ("damping", "friction", "friction_moving"):
+        for name in ("damping", "friction", "friction_moving", "transition"):
             value = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value >= 0.0):
                 raise ConfigError(f"contact {name} must not be negative, got {value}")

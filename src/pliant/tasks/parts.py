@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, Literal
 
-import numpy as np
 from pydantic import Field, model_validator
 
 from pliant.configuration import Config
 from pliant.quantity import quantity
 from pliant.references.surface_task import SurfaceTaskSettings
 from pliant.references.toolpaths.toolpath import PathMotion
-from pliant.robots.tool import Tool
+from pliant.robots.tool import Tool, ToolShape
 from pliant.spatial import Array, rpy
-from pliant.surfaces import CylinderSurface, MeshSurface, PlaneSurface, SphereSurface, SurfaceGeometry
 from pliant.tasks.draws import Drawn, bounds
 
 Vector = tuple[float, float, float]
@@ -35,15 +34,36 @@ class Pose(Config):
 
 
 class ToolConfig(Config):
-    """A rigid tool on the flange whose end is a ball."""
+    """A rigid tool on the flange: a rod that ends in a ball, or a cylinder or a block that touches with all of it."""
 
     mass: float = quantity(Tool.mass, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
     length: float = quantity(
-        Tool.length, "m", "from the flange along its z axis to the middle of the ball", gt=0.0, le=2.0
+        Tool.length, "m", "from the flange along its z axis to the middle of the ball, or to the end face", gt=0.0, le=2.0
     )
-    radius: float = quantity(0.015, "m", "of the ball that touches", gt=0.0, le=0.5)
+    shape: ToolShape = Field(
+        default="sphere",
+        description="what touches: sphere, cylinder or box; the last two, at several points and with moments, need"
+        " simulation.contact = 'explicit'",
+    )
+    radius: float = quantity(0.015, "m", "of the ball that touches, or of the cylinder", gt=0.0, le=0.5)
+    edges: tuple[float, float] | None = quantity(
+        None, "m", "of a box: those of its end face, along the flange's x and y axes"
+    )
     frame: str = Field(default=Tool.frame, min_length=1, description="name of the contact frame")
     parent: str = Field(default=Tool.parent, min_length=1, description="frame that carries the tool")
+
+    @model_validator(mode="after")
+    def _can_be(self) -> ToolConfig:
+        if (self.shape == "box") != (self.edges is not None):
+            raise ValueError("tool.edges and tool.shape = 'box' go together")
+        if self.edges is not None and not 0.0 < min(self.edges) <= max(self.edges) <= 1.0:
+            raise ValueError(f"tool.edges are above zero and at most 1 m, got {list(self.edges)}")
+        return self
+
+    def tool(self, unknown_mass: float = 0.0) -> Tool:
+        """As the robot carries it. Args: unknown_mass: kg of the real tool beside the known ones."""
+        made = Tool(self.length, self.mass + unknown_mass, self.radius, self.parent, self.frame, self.shape)
+        return made if self.edges is None else replace(made, edges=self.edges)
 
 
 class Sensor(Config):
@@ -54,49 +74,6 @@ class Sensor(Config):
         description="the frame that carries the tool: the sensor weighs the tool, whose known mass is taken off; none:"
         " the tool's, where it feels the contact alone",
     )
-
-
-class SurfaceConfig(Config):
-    """The part, as the controller believes it. In its own axes: z is a plane's normal and a cylinder's axis."""
-
-    shape: Literal["plane", "cylinder", "sphere", "mesh"] = Field(
-        default="plane", description="plane, cylinder, sphere or mesh"
-    )
-    pose: Pose | None = Field(
-        default=None, description="of its own frame in the world; none: in front of the robot, where it reaches well"
-    )
-    tilt: float = quantity(0.0, "deg", "turned about the world's y axis where no pose is given", ge=-180.0, le=180.0)
-    radius: float = quantity(0.15, "m", "of a cylinder or a sphere", gt=0.0, le=10.0)
-    hollow: bool = Field(default=False, description="of a cylinder or a sphere: the inner wall")
-    file: str | None = Field(default=None, description="of a mesh: STL, OBJ or PLY; beside the task")
-    scale: float = quantity(1.0, "1", "of a mesh: m per unit of its file, 0.001 for millimetres", gt=0.0, le=1e3)
-    outside: Vector | None = quantity(
-        None, "1", "of a mesh that is not closed: a direction out of the material, in its own axes"
-    )
-    grid: float | None = quantity(
-        None, "m", "of a mesh: between two samples of its distance; none: as 500 000 of them allow", gt=0.0, le=0.1
-    )
-    stiffness: float = quantity(2e4, "N/m", "of the contact", gt=0.0, le=1e7)
-    damping: float = quantity(1e2, "N·s/m", "of the contact", ge=0.0, le=1e5)
-    friction: float = quantity(0.25, "1", "Coulomb coefficient", ge=0.0, le=5.0)
-
-    @model_validator(mode="after")
-    def _consistent(self) -> SurfaceConfig:
-        if (self.shape == "mesh") != (self.file is not None):
-            raise ValueError("surface.file and surface.shape = 'mesh' go together")
-        return self
-
-    def geometry(self, pose: Pose) -> SurfaceGeometry:
-        """The surface in a pose, its own or another."""
-        place = np.array(pose.xyz)
-        if self.shape == "plane":
-            return PlaneSurface(place, pose.rotation)
-        if self.file is not None:
-            return MeshSurface.read(
-                self.file, place, pose.rotation, scale=self.scale, outside=self.outside, grid=self.grid
-            )
-        kind = CylinderSurface if self.shape == "cylinder" else SphereSurface
-        return kind(place, pose.rotation, self.radius, self.hollow)
 
 
 class PathConfig(Config):

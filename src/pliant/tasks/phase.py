@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from pliant.configuration import Config
 from pliant.quantity import quantity
+from pliant.surfaces import EdgeSurface, HoleSurface
 from pliant.tasks.draws import Drawn
 from pliant.tasks.parts import Pose, Vector
 
@@ -148,22 +149,36 @@ class Event(Config):
 class Thing(Config):
     """Something that stands around."""
 
-    shape: Literal["plane", "box", "ball"] = Field(description="plane (z of its pose is the normal), box or ball")
-    pose: Pose = Field(default=Pose(), description="of a plane's point, of a box's or ball's centre")
+    shape: Literal["plane", "box", "ball", "hole", "edge"] = Field(
+        description="plane (z of its pose is the normal), box, ball, hole (in a face, along −z) or edge (along x, where"
+        " the face towards −y ends)"
+    )
+    pose: Pose = Field(
+        default=Pose(), description="of a plane's point, of a box's or ball's centre, of the middle of a hole's mouth"
+    )
     size: Vector = quantity((0.1, 0.1, 0.1), "m", "edges of a box")
-    radius: float = quantity(0.1, "m", "of a ball", gt=0.0, le=100.0)
+    radius: float = quantity(0.1, "m", "of a ball or a hole", gt=0.0, le=100.0)
+    depth: float = quantity(HoleSurface.depth, "m", "of a hole, from its face to its bottom", gt=0.0, le=100.0)
+    chamfer: float = quantity(HoleSurface.chamfer, "m", "of a hole's mouth, bevelled by 45°", ge=0.0, le=100.0)
+    angle: float = quantity(90.0, "deg", "of an edge: of the material between its two faces", ge=10.0, le=170.0)
+    rounding: float = quantity(EdgeSurface.rounding, "m", "of an edge: its radius", ge=0.0, le=100.0)
     mass: float = quantity(0.0, "kg", "of a box or ball; 0: fixed to the world", ge=0.0, le=1e5)
     stiffness: float = quantity(2e4, "N/m", "of each contact", gt=0.0, le=1e9)
     damping: float = quantity(1e2, "N·s/m", "of each contact", ge=0.0, le=1e9)
     friction: float = quantity(0.25, "1", "Coulomb coefficient at rest", ge=0.0, le=10.0)
     friction_moving: float | None = quantity(None, "1", "while sliding; none: as at rest", ge=0.0, le=10.0)
+    transition: float = quantity(
+        1e-3, "m", "of penetration over which an explicit contact fades in: it is softer before", ge=0.0, le=1.0
+    )
 
     @model_validator(mode="after")
     def _can_be(self) -> Thing:
         if min(self.size) <= 0.0:
             raise ValueError(f"the edges of a box are above zero, got {list(self.size)}")
-        if self.shape == "plane" and self.mass > 0.0:
-            raise ValueError("a plane cannot move: leave its mass out")
+        if self.shape not in ("box", "ball") and self.mass > 0.0:
+            raise ValueError(f"a thing of shape {self.shape!r} cannot move: leave its mass out")
+        if self.shape == "hole" and self.chamfer >= self.depth:
+            raise ValueError(f"a hole is deeper than its bevel, got depth {self.depth:g}, chamfer {self.chamfer:g} m")
         return self
 
 

@@ -18,12 +18,12 @@ from pliant.tasks.parts import (
     Phases,
     Sensor,
     Simulation,
-    SurfaceConfig,
     TimingConfig,
     ToolConfig,
     TruthConfig,
 )
 from pliant.tasks.phase import Event, ImpedanceConfig, Phase, PlannerConfig, Thing
+from pliant.tasks.surface_config import SurfaceConfig
 
 FORMAT = 1
 _OF_A_PATH = {"surface": SurfaceConfig(), "path": PathConfig(), "force": Force(), "phases": Phases()}

@@ -6,13 +6,14 @@ friction limit ([HapFIC] sec. III). The law itself and its loop are compiled (cp
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
-from pliant._contact import BRISTLE_SIZE, ContactLoop, SampledMesh
+from pliant._contact import BRISTLE_SIZE, ContactLoop, SampledMesh, Solid
 from pliant.errors import ConfigError, RunFailedError
 from pliant.simulation.contact.material import ContactMaterial, require_stable_step
 from pliant.simulation.mujoco_library import HALF_STEPS, addresses
@@ -22,16 +23,18 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True)
 class ContactPair:
-    """Two geoms that can touch: the first a sphere, capsule or box, the second a plane, box, sphere, cylinder or the
-    frame of a mesh."""
+    """Two geoms that can touch: the first a sphere, capsule or box, or as a tool a cylinder or box, the second a plane,
+    box, sphere, cylinder or the frame of a mesh, hole or edge."""
 
     geom_a: str
     geom_b: str
     material: ContactMaterial
     hollow: bool = False
     """the material of the second, a sphere or a cylinder, is outside of it"""
-    mesh: SampledMesh | None = None
+    form: SampledMesh | Solid | None = None
     """the surface of the second, in its axes; None: its own shape"""
+    tool: bool = False
+    """the first is a tool that is no ball: its points share the material"""
 
 
 @dataclass(slots=True)
@@ -125,12 +128,12 @@ class ExplicitContacts:
 
     def _add(self, loop: ContactLoop, geom_a: int, geom_b: int, pair: ContactPair) -> slice:
         try:
-            first, count = loop.add_pair(geom_a, geom_b, pair.material.row(), pair.hollow, pair.mesh)
+            first, count = loop.add_pair(geom_a, geom_b, pair.material.row(), pair.hollow, pair.form, pair.tool)
         except ValueError as error:
             raise ConfigError(
-                f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule or box"
-                " against a plane, a mesh, a box or the inside of a hollow sphere or cylinder, a sphere or capsule"
-                " against the outside of one"
+                f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule, box or"
+                " tool against a plane, a mesh, a hole, an edge, a box or the inside of a hollow sphere or cylinder, a"
+                " sphere or capsule against the outside of one"
             ) from error
         return slice(first, first + count)
 
@@ -150,7 +153,8 @@ def explicit_contacts(
     start: Array,
     pairs: Sequence[tuple[str, str, Surface]],
     hollow: Collection[str] = (),
-    meshes: Mapping[str, SampledMesh] | None = None,
+    forms: Mapping[str, SampledMesh | Solid] | None = None,
+    tools: Collection[str] = (),
 ) -> ExplicitContacts:
     """The contacts of a model, checked for the physics step they need.
 
@@ -159,7 +163,8 @@ def explicit_contacts(
         start: (n,) configuration of the robot, whose joints come first.
         pairs: two geoms and what they feel like to each other.
         hollow: geoms whose material is outside of them.
-        meshes: geoms that are the frame of a mesh → its surface.
+        forms: geoms that are the frame of a mesh, a hole or an edge → its surface.
+        tools: geoms that are tools of several points.
 
     Raises:
         ConfigError: a pair of shapes without a law, or a physics step that is too long for a contact.
@@ -169,11 +174,12 @@ def explicit_contacts(
     mujoco.mj_forward(model, data)
     made: list[ContactPair] = []
     for a, b, surface in pairs:
-        inverse_mass = _inverse_mass(model, data, model.geom(a).id, presses=True)
+        geom = model.geom(a).id
+        inverse_mass = _tool_inverse_mass(model, data, geom) if a in tools else _inverse_mass(model, data, geom, True)
         inverse_mass += _inverse_mass(model, data, model.geom(b).id, presses=False)
         material = ContactMaterial.of(surface, inverse_mass)
         require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
-        made.append(ContactPair(a, b, material, b in hollow, (meshes or {}).get(b)))
+        made.append(ContactPair(a, b, material, b in hollow, (forms or {}).get(b), a in tools))
     return ExplicitContacts(model, made)
 
 
@@ -187,8 +193,23 @@ def _inverse_mass(model: mujoco.MjModel, data: mujoco.MjData, geom: int, presses
         half2 = np.asarray(model.geom_size[geom]) ** 2
         rocking = max(half2[i] / (half2[i] + half2[j]) for i in range(3) for j in range(3) if i != j)
         return 4.0 * max(1.0, 3.0 * float(rocking)) / float(model.body_mass[body])
+    return _at_point(model, data, body, data.geom_xpos[geom])
+
+
+def _tool_inverse_mass(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
+    """Bound of the same for a tool: its points and those of the other on it, which together have at most four times the
+    material's stiffness, each no lighter than the lightest corner of the box round the tool."""
+    R, half = data.geom_xmat[geom].reshape(3, 3), np.array(model.geom_size[geom])
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        half = half[[0, 0, 1]]
+    corners = [data.geom_xpos[geom] + R @ (half * signs) for signs in itertools.product((-1.0, 1.0), repeat=3)]
+    return 4.0 * max(_at_point(model, data, int(model.geom_bodyid[geom]), corner) for corner in corners)
+
+
+def _at_point(model: mujoco.MjModel, data: mujoco.MjData, body: int, point: Array) -> float:
+    """Largest eigenvalue of J M⁻¹ Jᵀ at a point of a body, 1/kg."""
     J = np.zeros((3, model.nv))
-    mujoco.mj_jac(model, data, J, None, data.geom_xpos[geom], body)
+    mujoco.mj_jac(model, data, J, None, point, body)
     M = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, M)
     return float(np.linalg.eigvalsh(J @ np.linalg.solve(M, J.T))[-1])

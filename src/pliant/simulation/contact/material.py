@@ -10,8 +10,7 @@ from pliant.errors import ConfigError
 from pliant.simulation.surface import Surface
 from pliant.spatial import Array
 
-_TRANSITION = 1e-3  # m, [HapFIC] sec. III
-_CRITICAL_VELOCITY = 1e-3  # m/s, same place
+_CRITICAL_VELOCITY = 1e-3  # m/s, [HapFIC] sec. III
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class ContactMaterial:
         return cls(
             stiffness=surface.stiffness,
             damping=surface.damping,
-            transition=_TRANSITION,
+            transition=surface.transition,
             mu_static=surface.friction,
             mu_dynamic=moving,
             critical_velocity=_CRITICAL_VELOCITY,

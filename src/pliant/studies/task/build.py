@@ -66,7 +66,7 @@ def _refuse(case: TaskCase, path: Toolpath) -> None:
     force = case.force.largest if path.force is None else float(max(path.force.at(t).value[0] for t in path.times))
     speeds = (("path.speed", case.path.speed), ("phases.approach_speed", case.phases.approach_speed))
     refuse_beyond(case.limits, [("force.normal" if path.force is None else "path.file", force)], speeds)
-    refuse_outside(case.limits, "path", path.places + case.tool.radius * path.normals)
+    refuse_outside(case.limits, "path", path.places + case.tool.tool().reach * path.normals)
 
 
 def build(case: TaskCase) -> Experiment:
@@ -100,7 +100,7 @@ def surface_fit(case: TaskCase) -> SurfaceFitConfig | None:
     """How the surface's tilt is estimated; None where the force goes along the believed normal."""
     if case.force.along == "believed":
         return None
-    return SurfaceFitConfig(radius=case.tool.radius, stiffness=case.surface.stiffness)
+    return SurfaceFitConfig(radius=case.tool.tool().reach, stiffness=case.surface.stiffness)
 
 
 def _source(case: TaskCase, source: ReferenceSource[Any]) -> ReferenceSource[Any]:

@@ -32,7 +32,7 @@ def checked_path(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         robot,
         case.tool.frame,
         course,
-        [partial(course.on, one, case.tool.radius) for one in true],
+        [partial(course.on, one, case.tool.tool().reach) for one in true],
         posture=PostureOptions(spins=case.path.spins),
         nominal=robot.home,
     )

@@ -15,7 +15,7 @@ from pliant.references.toolpaths.files import read_path
 from pliant.references.toolpaths.patterns import PATTERNS
 from pliant.references.toolpaths.pressing import PressingForce
 from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, resting, through
-from pliant.robot import Robot, Tool
+from pliant.robot import Robot
 from pliant.robots.chain import arm_of
 from pliant.spatial import Array, exp3, unit
 from pliant.surfaces import SurfaceGeometry
@@ -36,11 +36,10 @@ def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
     Raises:
         PliantError: a robot, joint or frame that there is not.
     """
-    tool = task.tool
-    made = Tool(tool.length, tool.mass + unknown_mass, tool.radius, tool.parent, tool.frame)
+    made = task.tool.tool(unknown_mass)
     locked = None if task.locked is None else {joint: math.radians(angle) for joint, angle in task.locked.items()}
     arm = Robot.load(source, locked=locked, tool=made, rotor_inertia=task.rotor_inertia)
-    return arm.with_contact(tool.frame, tool.radius)
+    return arm.touching_with(made)
 
 
 def laid_out(task: TaskParts, source: str) -> tuple[Robot, SurfaceGeometry, Toolpath]:
@@ -59,9 +58,9 @@ def default_pose(task: TaskParts, robot: Robot) -> Pose:
     """A place in front of the robot, turned by `surface.tilt` about the world's y axis: there the tool, upright on the
     surface, is farthest from joint limits and singularities, on the branch of home.
 
-    A cylinder lies across, along the y axis; its top, like a sphere's and a mesh's, is where a plane would be.
+    A cylinder lies across, along the y axis; its top, like that of other parts, is where a plane would be.
     """
-    if task.surface.shape == "mesh":
+    if task.surface.shape in ("mesh", "hole", "edge"):
         turned = task.surface.geometry(Pose(rpy=(0.0, task.surface.tilt, 0.0)))
         top = turned.top()
         at = good_place(robot, task.tool.frame, turned.normal(top), turned.curvatures(top)[0])
@@ -132,7 +131,11 @@ def toolpath_of(task: TaskParts, surface: SurfaceGeometry, robot: Robot) -> Tool
     """
     path = task.path
     motion = PathMotion(
-        path.speed, path.acceleration, math.radians(path.tool_tilt), math.radians(path.tool_lean), task.tool.radius
+        path.speed,
+        path.acceleration,
+        math.radians(path.tool_tilt),
+        math.radians(path.tool_lean),
+        task.tool.tool().reach,
     )
     near = surface.near(surface.top() if path.at is None else np.array(path.at))
     along, across = _axes(task, surface, near.point, near.normal)

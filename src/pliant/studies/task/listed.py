@@ -9,20 +9,22 @@ import numpy as np
 
 from pliant.errors import ConfigError, options
 from pliant.references.stages import Ending, Stage, StageChange
-from pliant.robot import Robot, Tool
+from pliant.robot import Robot
 from pliant.signals import TaskReference
 from pliant.simulation import Ball, Box, Plane, Scene
 from pliant.simulation import Surface as Touch
-from pliant.simulation.scene import Thing
+from pliant.simulation.scene import Thing, fixed_part
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.phase_axes import axis_modes, check_axes, frame_axes
 from pliant.studies.task.pressed import with_axes
+from pliant.surfaces import EdgeSurface, HoleSurface
 from pliant.tasks.draws import drawn
 from pliant.tasks.phase import Condition, Event, PerAxis
 from pliant.tasks.phase import Thing as Described
 
+_DRAWN = 4.0  # radii of a hole, half of the face that is drawn round it
 _CHANGES = ("target", "wrench", "stiffness", "force_max", "range", "reset")
 _TUNING, _WHOLE = ("stiffness", "force_max", "range"), ("reset",)
 
@@ -50,9 +52,9 @@ def robot_of_list(case: TaskCase, unknown_mass: float = 0.0) -> Robot:
     locked = None if case.locked is None else {joint: math.radians(angle) for joint, angle in case.locked.items()}
     if tool.frame not in driven:
         return Robot.load(case.robot, locked=locked, rotor_inertia=case.rotor_inertia)
-    made = Tool(tool.length, tool.mass + unknown_mass, tool.radius, tool.parent, tool.frame)
+    made = tool.tool(unknown_mass)
     arm = Robot.load(case.robot, locked=locked, tool=made, rotor_inertia=case.rotor_inertia)
-    return arm.with_contact(tool.frame, tool.radius)
+    return arm.touching_with(made)
 
 
 def scene_of(case: TaskCase) -> Scene:
@@ -151,7 +153,13 @@ def _numbers(index: int, key: str, value: Any, sizes: tuple[int, ...]) -> Array:
 
 
 def _thing(name: str, one: Described) -> Thing:
-    touch = Touch(one.stiffness, one.damping, one.friction, one.friction_moving)
+    touch = Touch(one.stiffness, one.damping, one.friction, one.friction_moving, one.transition)
+    place = (np.array(one.pose.xyz), one.pose.rotation)
+    if one.shape == "hole":
+        hole = HoleSurface(*place, one.radius, one.depth, one.chamfer)
+        return fixed_part(name, hole, touch, (_DRAWN * one.radius, 0.0))
+    if one.shape == "edge":
+        return fixed_part(name, EdgeSurface(*place, math.radians(one.angle), one.rounding), touch)
     if one.shape == "plane":
         x, y, z = (float(entry) for entry in one.pose.rotation[:, 2])
         return Plane(name, one.pose.xyz, (x, y, z), touch, (0.6, 0.6))

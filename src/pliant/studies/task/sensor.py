@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from pliant.errors import ConfigError, options
 from pliant.estimation import CarriedMass
@@ -41,6 +44,8 @@ def _weighs(task: TaskParts) -> bool:
 
 
 def _rod(tool: ToolConfig, mass: float) -> CarriedMass:
-    """A uniform rod from the sensor along its z axis, as the robot's model has it."""
-    across, along = mass * (3.0 * tool.radius**2 + tool.length**2) / 12.0, 0.5 * mass * tool.radius**2
-    return CarriedMass(mass, (0.0, 0.0, 0.5 * tool.length), inertia=(across, across, along, 0.0, 0.0, 0.0))
+    """A uniform body from the sensor along its z axis, as the robot's model has it."""
+    xx, _, yy, _, _, zz = (
+        float(entry) for entry in replace(tool.tool(), mass=mass).inertia.inertia[np.tril_indices(3)]
+    )
+    return CarriedMass(mass, (0.0, 0.0, 0.5 * tool.length), inertia=(xx, yy, zz, 0.0, 0.0, 0.0))
