@@ -38,7 +38,11 @@ class ToolConfig(Config):
 
     mass: float = quantity(Tool.mass, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
     length: float = quantity(
-        Tool.length, "m", "from the flange along its z axis to the middle of the ball, or to the end face", gt=0.0, le=2.0
+        Tool.length,
+        "m",
+        "from the flange along its z axis to the middle of the ball, or to the end face",
+        gt=0.0,
+        le=2.0,
     )
     shape: ToolShape = Field(
         default="sphere",
