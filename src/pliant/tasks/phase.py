@@ -176,7 +176,7 @@ class Thing(Config):
         if min(self.size) <= 0.0:
             raise ValueError(f"the edges of a box are above zero, got {list(self.size)}")
         if self.shape not in ("box", "ball") and self.mass > 0.0:
-            raise ValueError(f"a thing of shape {self.shape!r} cannot move: leave its mass out")
+            raise ValueError(f"a {self.shape} cannot move: leave its mass out")
         if self.shape == "hole" and self.chamfer >= self.depth:
             raise ValueError(f"a hole is deeper than its bevel, got depth {self.depth:g}, chamfer {self.chamfer:g} m")
         return self
