@@ -55,6 +55,10 @@ class Believed:
     """frame from which a force is asked; None: no force is asked for"""
     surface: SurfaceGeometry | None = None
     """the surface that is pressed, as it is believed; None: horizontal"""
+    stiffness: float | None = None
+    """N/m of that surface's contact; None: nothing is believed of it"""
+    damping: float | None = None
+    """N·s/m of that surface's contact"""
     compensation: Compensation = "none"
     """what the robot compensates by itself"""
     sensing_delay: float = 0.0

@@ -93,7 +93,7 @@ def _check_contact_range(config: MpcConfig, model: pin.Model, posture: Array) ->
     if not config.predictive_model.force_state:
         return math.inf
     contact, dt = config.contact, config.dt
-    inertia = _task_inertia(config, model, posture)
+    inertia = task_inertia(config, model, posture)
     stiffness, damping = (filled(values, contact.dimension) for values in (contact.stiffness, contact.damping))
     exponential = contact.integrator == "exponential"
     largest = inertia / dt**2 if exponential else (1.0 - 1e-6) * damping / dt
@@ -113,7 +113,7 @@ def _check_contact_range(config: MpcConfig, model: pin.Model, posture: Array) ->
     return float(largest[0 if contact.dimension == 1 else 2])
 
 
-def _task_inertia(config: MpcConfig, model: pin.Model, posture: Array) -> Array:
+def task_inertia(config: MpcConfig, model: pin.Model, posture: Array) -> Array:
     """(m,) inertia that each axis of the contact feels, kg and kg m², in axes nearly those of the contact."""
     data = model.createData()
     pin.computeJointJacobians(model, data, posture)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from pliant.entries import Believed
 from pliant.interfaces import Lookahead, Needs
 from pliant.mpc.config import Compensation, Contact, MpcConfig
 from pliant.mpc.costs import PhaseCosts, Term
+from pliant.mpc.make_problem import task_inertia
 from pliant.robot import Robot
 
 _POSTURE_SHARE = 0.05
@@ -40,8 +43,9 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
     """The task's first frame, period and phases; the robot's delays, where the controller predicts over them.
 
     A phase that the configuration does not know has the costs of its last phase with contact, or of its first one
-    without. Where the task has no phases, the costs are those of contact or of free motion as it is felt, and the
-    position counts more against the posture.
+    without. Where the force is a state and nothing is estimated of the contact, its stiffness is the believed one.
+    Where the task has no phases, the costs are those of contact or of free motion as it is felt, and the position
+    counts more against the posture.
     """
     named = bool(believed.phases)
     costs = config.costs
@@ -55,9 +59,28 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
             "phase_by": "name" if named else "contact",
             "phases": _phases(config, believed.phases) if named else _FELT,
             "compensation": _timed(config.compensation, believed),
-            "contact": _on_surface(config.contact, believed),
+            "contact": _on_surface(_as_stiff(robot, config, believed), believed),
         }
     )
+
+
+def _as_stiff(robot: Robot, config: MpcConfig, believed: Believed) -> Contact:
+    """With the believed stiffness and damping, where the force is a state and nobody estimates them while it runs.
+
+    At most half of the stiffness that the exponential integrator bears, Λ/dt².
+    """
+    model = config.predictive_model
+    spring = model.force_state and not (model.springy or config.compensation.environment)
+    if not spring or believed.stiffness is None or believed.damping is None:
+        return config.contact
+    placed = config.model_copy(update={"frame": believed.frames[0]})
+    largest = 0.5 * float(np.min(task_inertia(placed, robot.model, robot.home))) / config.dt**2
+    update = {
+        "stiffness": (min(believed.stiffness, largest),),
+        "damping": (believed.damping,),
+        "integrator": "exponential",
+    }
+    return config.contact.model_copy(update=update)
 
 
 def _on_surface(contact: Contact, believed: Believed) -> Contact:

@@ -56,6 +56,8 @@ class TaskCase(TaskParts, CaseConfig):
             period=self.simulation.period,
             presses=self.tool.frame,
             surface=surface,
+            stiffness=self.surface.stiffness,
+            damping=self.surface.damping,
             compensation=self.compensates,
             sensing_delay=self.timing.sensing_delay,
             computation_delay=self.timing.computation_delay,
