@@ -29,14 +29,15 @@ def suggested(robot: Robot, name: str, believed: Believed) -> MpcConfig:
     return found
 
 
-def test_the_force_is_predicted_with_the_believed_stiffness(robot: Robot) -> None:
-    contact = suggested(robot, "force-feedback-mpc", BELIEVED).contact
+@pytest.mark.parametrize("name", ["force-feedback-mpc", "visco-elastic-mpc"])
+def test_the_force_is_predicted_with_the_believed_stiffness(robot: Robot, name: str) -> None:
+    contact = suggested(robot, name, BELIEVED).contact
     assert contact.stiffness == (2e4,)
     assert contact.damping == (80.0,)
     assert contact.integrator == "exponential"
 
 
-@pytest.mark.parametrize("name", ["offset-free-mpc", "visco-elastic-mpc", "classical-mpc"])
+@pytest.mark.parametrize("name", ["offset-free-mpc", "classical-mpc"])
 def test_who_estimates_it_or_has_no_force_keeps_its_own(robot: Robot, name: str) -> None:
     assert suggested(robot, name, BELIEVED).contact.stiffness == find_controller(name).default.contact.stiffness
 

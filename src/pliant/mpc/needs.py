@@ -69,8 +69,7 @@ def _as_stiff(robot: Robot, config: MpcConfig, believed: Believed) -> Contact:
 
     At most half of the stiffness that the exponential integrator bears, Λ/dt².
     """
-    model = config.predictive_model
-    spring = model.force_state and not (model.springy or config.compensation.environment)
+    spring = config.predictive_model.force_state and not config.compensation.environment
     if not spring or believed.stiffness is None or believed.damping is None:
         return config.contact
     placed = config.model_copy(update={"frame": believed.frames[0]})
