@@ -12,14 +12,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from pliant.errors import ConfigError
 from pliant.frozen import changed
-from pliant.interfaces import Compensation, Plant
+from pliant.interfaces import Plant
 from pliant.sampling import whole_periods
-from pliant.signals import Command, Measurement, Truth
+from pliant.signals import Command, Measurement
 from pliant.simulation.imperfections.config import Imperfections
+from pliant.simulation.imperfections.plant import ImperfectPlant
 from pliant.spatial import Array, as_vector, clamp
 from tests.twins.imperfect_robot.actuation import Actuation, ActuationState
 from tests.twins.imperfect_robot.delay import Delay
@@ -49,61 +48,20 @@ class TwinWorld:
     """(n,) what the drives asked of the motors last, N·m"""
 
 
-class ImperfectTwin(Plant[TwinWorld]):
-    """Wraps a plant with perfect sensors and actuators.
+class ImperfectTwin(ImperfectPlant):
+    """The same arguments and periods as `ImperfectPlant`; its own state and steps."""
 
-    Three periods, each a whole multiple of the next: the control period, the torque loop's, and the inner plant's.
-    Gears act at the inner plant's, sensors and delays at the torque loop's.
-
-    Args:
-        inner: the perfect plant. It receives the torque at the link side of the joints.
-        config: what is imperfect.
-        seed: of every random draw.
-        period: control period, s; None: the torque loop's.
-        holding_torque: (n,) N·m in effect until the first command arrives; None: what the inner plant says was sent
-            before.
-
-    Raises:
-        ConfigError: periods or delays that are not whole multiples, or joint damping that the inner plant does not
-            have. ShapeError: a value per joint that does not fit the robot.
-    """
-
-    def __init__(
-        self,
-        inner: Plant[Any],
-        config: Imperfections,
-        *,
-        seed: int = 0,
-        period: float | None = None,
-        holding_torque: npt.ArrayLike | None = None,
-    ) -> None:
-        self.inner = inner
-        self.config = config
-        self.seed = seed
+    def __init__(self, inner: Plant[Any], config: Imperfections, **options: Any) -> None:
+        super().__init__(inner, config, **options)
         tick = config.torque_loop.period
-        self.period = tick if period is None else period
-        self._ticks = whole_periods(self.period, tick, "the control period")
-        self._inner_steps = whole_periods(tick, inner.period, "the torque loop's period")
-        if self._ticks < 1 or self._inner_steps < 1:
-            raise ConfigError("the control period and the torque loop's must be above zero")
-        self._holding_torque = holding_torque
         self._delay: Delay[Array] = Delay(whole_periods(config.computation_delay, tick, "computation delay"))
         self._ripple = Ripple(config.ripple, tick)
-        _check_damping(inner, config.joint_damping)
-
-    @property
-    def noisy(self) -> frozenset[str]:
-        return self.config.sensing.noisy
-
-    @property
-    def compensates(self) -> Compensation:
-        return self.inner.compensates
 
     def init(self) -> tuple[Measurement, TwinWorld]:
         """The first measurement, and the robot as it stands, holding itself with `holding_torque`."""
         true, inner = self.inner.init()
         n = true.q.shape[0]
-        self._build(n)
+        self._build_links(n)
         held = true.torque_sent if self._holding_torque is None else self._holding_torque
         held = as_vector(held, n, "holding_torque")
         true = changed(true, torque=held, torque_sent=held)
@@ -136,12 +94,9 @@ class ImperfectTwin(Plant[TwinWorld]):
             self._sense(changed(true, torque_sent=asked), world)
         return changed(world.reading, torque_sent=sent), world
 
-    def truth(self, world: TwinWorld) -> Truth | None:
-        return self.inner.truth(world.inner)
-
     # ------------------------------------------------------------------ inside
 
-    def _build(self, n: int) -> None:
+    def _build_links(self, n: int) -> None:
         """Links whose sizes depend on the number of joints, which the plant tells by its first measurement."""
         self._actuation = Actuation(self.config.actuation, self.inner.period, n)
         self._torque_loop = TorqueLoop(self.config.torque_loop, self._actuation.limit)
@@ -163,15 +118,3 @@ class ImperfectTwin(Plant[TwinWorld]):
     def _sense(self, true: Measurement, world: TwinWorld) -> None:
         wrenches, world.ripple_phase = self._ripple.step(true.wrenches, true.v, world.ripple_phase)
         world.reading, world.sensing = self._sensing.step(changed(true, wrenches=wrenches), world.sensing)
-
-
-def _check_damping(inner: Plant[Any], wanted: float) -> None:
-    # As a torque held over a period, damping can make a light joint unstable; the plant integrates it implicitly.
-    if wanted == 0.0:
-        return
-    joints = getattr(inner, "joints", None)
-    if joints is None or not np.allclose(getattr(joints, "damping", 0.0), wanted):
-        raise ConfigError(
-            f"joint damping of {wanted:g} N·m s/rad must be part of the plant inside: give it"
-            f" joints=JointEffects(damping={wanted:g})"
-        )
