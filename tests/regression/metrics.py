@@ -24,9 +24,10 @@ STACK += " rest-plain singular calibration balance"
 HAPTIC = (
     "floor floor-noise box-top box-tip box-shank ball ball-free ball-unreachable ball-actuator floor-actuator online"
 )
-HAPTIC += " delay target-sequence random parameters"
+HAPTIC += " delay target-sequence random parameters experiment-4 target-stream"
 POLISHING = "ideal tables-2-3-4 tables-2-3-4-delayed square slow slow-tilted fast-tilted fast-pushed horizon stiffness"
 POLISHING += " force-weight iterations anchor ripple ablation robustness wrong-masses"
+POLISHING += " ten-circles stop overshoot torque-loop sensor-mismatch naive"
 BASELINES = ("stack-paper", "stack-corrected", "stack-hapfic", "spring", "operational-space")
 MPC = ("classical-mpc", "torque-feedback-mpc", "force-feedback-mpc", "offset-free-mpc")
 
