@@ -29,7 +29,7 @@ from pliant.signals import Tick
 
 STACK = ("stack", "stack-paper", "stack-corrected", "stack-hapfic", "spring", "operational-space")
 HAPTIC = ("haptic", "haptic-paper", "haptic-hold")
-MPC = ("classical-mpc", "torque-feedback-mpc", "force-feedback-mpc", "offset-free-mpc")
+MPC = ("classical-mpc", "torque-feedback-mpc", "force-feedback-mpc", "offset-free-mpc", "visco-elastic-mpc")
 LAYERS = {"joint_limits": {"margin": 0.8}, "torque_step": 0.02}  # rad, share: so that both have something to do
 
 

@@ -253,7 +253,8 @@ def test_bounds_reach_the_nodes() -> None:
 
 
 def test_the_controllers_are_offered_with_units() -> None:
-    assert set(CONTROLLERS) == {"force-feedback-mpc", "offset-free-mpc", "torque-feedback-mpc", "classical-mpc"}
+    kinds = ("force-feedback", "offset-free", "torque-feedback", "classical", "visco-elastic")
+    assert set(CONTROLLERS) == {f"{kind}-mpc" for kind in kinds}
     for name in ("dt", "period", "time_budget", "torque_bandwidth", "fallback_damping"):
         extra = MpcConfig.model_fields[name].json_schema_extra
         assert isinstance(extra, dict)

@@ -109,7 +109,7 @@ BEYOND_CASES: tuple[Case[PolishingConfig], ...] = (
     ),
     Case(
         case_config("wrong-masses", controller=BEST, **imperfect(delay=DELAY)),
-        [varied(name, "masses ± 20 %", {"model_mass_error": 0.2}) for name in ALL],
+        [varied(name, "masses ± 20 %", {"model_mass_error": 0.2}) for name in (*ALL, "visco-elastic-mpc")],
         SWEPT,
     ),
 )
