@@ -25,6 +25,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 
 def loaded(name: str) -> ModuleType:
+    """An example by the name of its file, without its ending."""
     spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None

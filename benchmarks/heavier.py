@@ -1,6 +1,6 @@
 """A robot whose links are heavier by a factor, as a URDF: an arm that no catalogue has.
 
-    python benchmarks/heavier.py panda 2 /tmp/panda_2.urdf && pliant run wipe --robot /tmp/panda_2.urdf
+    python benchmarks/heavier.py panda 2 panda_masses_x2.urdf && pliant run wipe --robot panda_masses_x2.urdf
 
 Masses and inertias are multiplied, limits stay.
 """

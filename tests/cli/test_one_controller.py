@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 import pliant
+from benchmarks import domains
 from pliant.cli import one_controller
 from pliant.cli.app import app
 from pliant.experiments.origins import leaves
@@ -17,7 +17,6 @@ from pliant.wiring.domains import HOLDS, trials
 from pliant.wiring.registry import controllers
 
 CLI = CliRunner()
-_DOMAINS = Path(__file__).parents[2] / "benchmarks" / "domains.py"
 _TEMPLATE = Path(pliant.__file__).with_name("templates") / "controller.py"
 
 
@@ -61,9 +60,4 @@ def test_trials_are_of_what_there_is_and_once() -> None:
 @pytest.mark.parametrize(("name", "holds"), [("offset-free-mpc", True), ("classical-mpc", False)])
 def test_what_is_told_can_be_found_again(name: str, holds: bool) -> None:
     trial = next(one for one in trials() if one.controller == name and (one.verdict == HOLDS) is holds)
-    spec = importlib.util.spec_from_file_location("domains_command", _DOMAINS)
-    assert spec is not None
-    assert spec.loader is not None
-    command = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(command)
-    assert command.run(trial.controller, trial.robot, trial.stiffness, trial.delay) == trial.verdict
+    assert domains.run(trial.controller, trial.robot, trial.stiffness, trial.delay) == trial.verdict

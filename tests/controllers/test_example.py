@@ -6,10 +6,10 @@ import re
 
 import pytest
 
+from benchmarks.examples_on_robots import loaded
 from pliant.errors import RobotError
-from tests.examples import example
 
-main = example("03_stack_on_your_urdf").main
+main = loaded("03_stack_on_your_urdf").main
 
 
 @pytest.mark.parametrize("robot", ["panda", "ur5e"])

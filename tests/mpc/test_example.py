@@ -6,14 +6,14 @@ import re
 
 import pytest
 
-from tests.examples import FOLDER, example
+from benchmarks.examples_on_robots import EXAMPLES, loaded
 
 PRESSING = "05_force_feedback_mpc"
 
 
 @pytest.mark.parametrize("robot", ["iiwa14", "lwr4", "ur5e"])
 def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
-    example(PRESSING).main(robot)
+    loaded(PRESSING).main(robot)
     said = capsys.readouterr().out
     found = re.fullmatch(rf"{robot}: contact felt at ([\d.]+) s, asked 20 N, got ([\d.]+) ± ([\d.]+) N\n", said)
     assert found, said
@@ -24,14 +24,14 @@ def test_it_finds_the_table_and_presses(robot: str, capsys: pytest.CaptureFixtur
 
 
 def test_it_is_short() -> None:
-    source = (FOLDER / f"{PRESSING}.py").read_text().split('"""', 2)[2]
+    source = (EXAMPLES / f"{PRESSING}.py").read_text().split('"""', 2)[2]
     code = [line for line in source.splitlines() if line.strip() and not line.strip().startswith("#")]
     body = [line for line in code if not line.startswith(("import", "from"))]
     assert len(body) <= 40
 
 
 def test_compensation_presses_where_the_stock_controller_does_not(capsys: pytest.CaptureFixture[str]) -> None:
-    module = example("06_offset_free_mpc")
+    module = loaded("06_offset_free_mpc")
     means: dict[str, float] = {}
     for which in ("offset-free", "stock"):
         module.main(which)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import trimesh
 
+from benchmarks.examples_on_robots import loaded
 from pliant.errors import ConfigError
 from pliant.spatial import exp3
 from pliant.surfaces import MeshSurface, SphereSurface
 from pliant.tasks.files import CATALOGUE
-from tests.examples import example
 from tests.surfaces.meshes import BALL, box, cap, written
 
 R, ORIGIN = exp3([0.2, -0.3, 0.5]), np.array([0.5, -0.1, 0.2])
@@ -94,7 +94,7 @@ def test_curvature_of_a_ball_and_of_a_hollow(shell: MeshSurface) -> None:
 
 
 def test_the_part_of_the_catalogue_is_that_of_the_example() -> None:
-    module = example("07_concave_part")
+    module = loaded("07_concave_part")
     kept = trimesh.load(CATALOGUE / "parts" / "wave.ply", force="mesh")
     made = module.part()
     assert len(kept.faces) == len(made.faces)
