@@ -7,12 +7,13 @@ import sys
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar, cast, get_args, get_origin
+from typing import Any, TypeVar, cast
 
 from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
 
 from pliant.errors import ConfigError, OutputError, options
 from pliant.files import read_file
+from pliant.overlay import models_in, overlaid
 
 MOST = 1e12
 """size of the largest number of a configuration, in whatever unit: beyond it sums and products stop making sense"""
@@ -126,38 +127,6 @@ def validated(kind: type[C], values: Mapping[str, Any]) -> C:
         raise ConfigError(_sentence(kind, error)) from None
 
 
-def overlaid(kind: type[BaseModel] | None, base: Any, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """The values with some replaced.
-
-    Tables are merged key by key; a table of plain numbers, or one of several forms, is one value.
-
-    Args:
-        kind: what the values are of, as far as it is known.
-        base: a table; anything else counts as an empty one.
-        changes: what replaces them.
-    """
-    result = dict(base) if isinstance(base, Mapping) else {}
-    for key, value in changes.items():
-        field = None if kind is None else kind.model_fields.get(key)
-        annotation = None if field is None else field.annotation
-        nested = isinstance(value, Mapping) and isinstance(result.get(key), Mapping) and not _is_numbers(annotation)
-        models = [] if _is_table(annotation) else _models_in(annotation)
-        nested = nested and len(models) < 2
-        result[key] = overlaid(models[0] if models else None, result[key], value) if nested else value
-    return result
-
-
-def _is_table(annotation: Any) -> bool:
-    return get_origin(annotation) is dict or any(_is_table(option) for option in get_args(annotation))
-
-
-def _is_numbers(annotation: Any) -> bool:
-    """Whether a field is a table of numbers, `dict[str, float]`, or nothing."""
-    if get_origin(annotation) is dict:
-        return get_args(annotation)[1] in (float, int)
-    return any(_is_numbers(option) for option in get_args(annotation))
-
-
 def _toml_value(text: str) -> Any:
     try:
         read = tomllib.loads(f"value = {text}")
@@ -214,17 +183,8 @@ def _keys_beside(kind: type[BaseModel], location: Sequence[int | str]) -> list[s
         field = fields.get(str(part))
         if field is None:
             continue  # a discriminator or a list index
-        nested = _models_in(field.annotation)
+        nested = models_in(field.annotation)
         if not nested:
             return []
         fields = nested[0].model_fields
     return list(fields)
-
-
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    found: list[type[BaseModel]] = []
-    for argument in getattr(annotation, "__args__", ()):
-        found += _models_in(argument)
-    return found

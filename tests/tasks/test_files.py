@@ -44,6 +44,24 @@ def test_a_file_inherits_and_its_variants_are_its_own(tmp_path: Path) -> None:
         load_task(path, "slow")
 
 
+def test_one_phase_of_a_list_is_changed_by_its_name(tmp_path: Path) -> None:
+    """A file, a variant and an option change what they name; the other phases stay as they are."""
+    first = '[[phase]]\nname = "down"\ntarget = [0.5, 0, 0.1]\nduration = 1.0\n'
+    written(tmp_path, first + "[[phase]]\nwrench = [0, 0, 9]\nduration = 2.0\n")
+    text = 'base = "task.toml"\n[phase.down]\nduration = 3.0\n[variant.hard.phase.2]\nwrench = [0, 0, 20]\n'
+    path = written(tmp_path, text, "b.toml")
+    hard = load_task(path, "hard")
+    assert [phase.duration for phase in hard.phase] == [3.0, 2.0]
+    assert [phase.wrench for phase in hard.phase] == [None, (0.0, 0.0, 20.0)]
+    assert load_task(path).phase[1].wrench == (0.0, 0.0, 9.0)
+    assert merged(hard, {"phase": {"down": {"duration": 1.5}}}).phase[0].duration == 1.5
+    written(tmp_path, text + "[variant.odd.phase.don]\nduration = 1.0\n", "b.toml")
+    with pytest.raises(
+        ConfigError, match=r"b\.toml: phase has nothing called 'don'; valid: '2', 'down' .*did you mean 'down'"
+    ):
+        load_task(path, "odd")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pliant.configuration import overlaid, read_toml, validated
+from pliant.configuration import read_toml, validated
 from pliant.errors import ConfigError, options
+from pliant.overlay import overlaid
 from pliant.tasks.task import Task
 
 CATALOGUE = Path(__file__).parent / "catalogue"
@@ -45,7 +46,7 @@ def load_task(path: str | Path, variant: str | None = None) -> Task:
         return found.task
     if variant not in found.variants:
         raise ConfigError(f"{found.path} has no variant {variant!r}; {options(found.variants, variant)}")
-    return checked(found.path, overlaid(Task, found.task.model_dump(), found.variants[variant]))
+    return changed(found.path, found.task, found.variants[variant])
 
 
 def read_task(path: str | Path) -> TaskFile:
@@ -84,6 +85,18 @@ def checked(file: Path, values: Mapping[str, Any]) -> Task:
     return _beside(file.parent, task)
 
 
+def changed(file: Path, task: Task, changes: Mapping[str, Any]) -> Task:
+    """A task with the changes of one of its variants. Args: file: where they stand; its errors name it."""
+    return checked(file, _over(file, task.model_dump(), changes))
+
+
+def _over(file: Path, base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    try:
+        return overlaid(Task, base, changes)
+    except ConfigError as error:
+        raise ConfigError(f"{file}: {error}") from None
+
+
 def _with_base(file: Path, depth: int) -> dict[str, Any]:
     """Values of a file over those of the files that it inherits from."""
     values = read_toml(file)
@@ -97,7 +110,7 @@ def _with_base(file: Path, depth: int) -> dict[str, Any]:
     above = file.parent / base if base.endswith(".toml") else located(base)
     inherited = _with_base(above, depth + 1)
     inherited.pop("variant", None)  # variants are the file's own
-    return overlaid(Task, inherited, values)
+    return _over(file, inherited, values)
 
 
 def _beside(folder: Path, task: Task) -> Task:

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from pliant.configuration import overlaid
 from pliant.experiments.case import Case, Changes, Row
 from pliant.mpc.defaults import OffsetFreeMpc
+from pliant.overlay import overlaid
 from pliant.simulation import Imperfections
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.rows import (

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from pliant.configuration import overlaid
 from pliant.experiments.case import Case, Changes, PaperTable, Row, once
+from pliant.overlay import overlaid
 from pliant.studies.polishing.cases_sweeps import force_weight
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.rows import (

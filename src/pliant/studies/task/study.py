@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pliant.configuration import overlaid, validated
+from pliant.configuration import validated
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
 from pliant.studies.task.config import TaskCase, case_of
 from pliant.studies.task.list_study import ListStudy
 from pliant.studies.task.path_study import PathStudy
 from pliant.studies.task.task_study import TaskStudy
-from pliant.tasks.files import TaskFile, checked, read_task
+from pliant.tasks.files import TaskFile, changed, read_task
 from pliant.tasks.task import Task
 
 
@@ -45,7 +45,7 @@ def study_of(name: str) -> TaskStudy:
     for variant, changes in found.variants.items():
         if variant in tasks:
             raise ConfigError(f"{found.path}: a variant cannot have the name of its file, {variant!r}")
-        tasks[variant] = checked(found.path, overlaid(Task, found.task.model_dump(), changes))
+        tasks[variant] = changed(found.path, found.task, changes)
     return _kind(name, {key: case_of(task, key) for key, task in tasks.items()})
 
 

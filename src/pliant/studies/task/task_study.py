@@ -7,12 +7,13 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pliant.configuration import merged, overlaid
+from pliant.configuration import merged
 from pliant.dotted import nested
 from pliant.errors import ConfigError
 from pliant.experiments.base import Study
 from pliant.experiments.case import Case, Row, seeded
 from pliant.experiments.parameter_search import ParameterSearch
+from pliant.overlay import overlaid
 from pliant.references.reach.check import ReachCheck
 from pliant.studies.task.check import CHECKED_DRAWS
 from pliant.studies.task.config import TaskCase
