@@ -25,7 +25,7 @@ from pliant.configuration import merged
 from pliant.experiments.registry import get_study
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.session import Session
-from pliant.live.server.launch import page_beside
+from pliant.live.server.launch import page_process
 from pliant.signals import Tick
 
 _SKIPPED = 500  # first periods: caches and the browser's start
@@ -70,7 +70,7 @@ def measured(seconds: float, chromium: str | None) -> dict[str, float]:
     links: list[str] = []
     with (
         tempfile.TemporaryDirectory() as folder,
-        page_beside("127.0.0.1", 0, Path(folder), lambda url, exposed: links.append(url)) as link,
+        page_process("127.0.0.1", 0, Path(folder), lambda url, exposed: links.append(url)) as link,
         looking(links[0], chromium),
     ):
         session = Session(study, config, link.send, 1, experiment=experiment, restarts=False)

@@ -15,8 +15,8 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
 from pliant.errors import ConfigError
-from pliant.live.server import closed
-from pliant.live.server.access import Door, is_loopback, listen
+from pliant.live.server import protected
+from pliant.live.server.access import AccessControl, is_loopback, listen
 from pliant.live.server.web import PageServer
 
 WEBSOCKET = {
@@ -160,7 +160,7 @@ def test_garbage_in_place_of_a_request(server: PageServer) -> None:
 
 
 def test_slow_strangers_hold_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(closed, "_PATIENCE", 1.0)
+    monkeypatch.setattr(protected, "_PATIENCE", 1.0)
     with PageServer("127.0.0.1", 0) as server:
         _hold_up(server)
 
@@ -202,12 +202,12 @@ def test_a_host_that_is_not_here() -> None:
 
 
 def test_a_page_for_others_knows_addresses_but_no_foreign_names() -> None:
-    door = Door("0.0.0.0", 80, "secret")
+    access = AccessControl("0.0.0.0", 80, "secret")
     held = ["pliant-token-80=secret"]
-    assert door.answer("/", ["10.0.0.7:80"], [], held) is None
-    assert door.answer("/", ["evil.example"], [], held) is not None
-    assert door.answer("/", ["10.0.0.7"], [], []) is not None
-    assert door.answer("/", ["10.0.0.7", "evil.example"], [], held) is not None
+    assert access.answer("/", ["10.0.0.7:80"], [], held) is None
+    assert access.answer("/", ["evil.example"], [], held) is not None
+    assert access.answer("/", ["10.0.0.7"], [], []) is not None
+    assert access.answer("/", ["10.0.0.7", "evil.example"], [], held) is not None
 
 
 @pytest.mark.parametrize(

@@ -164,7 +164,7 @@ def test_a_second_browser_watches_takes_over_and_vanishes(live: Live) -> None:
     )
     other.set_default_timeout(1e3 * PATIENCE)
     other.goto(live.server.url)
-    until(lambda: live.page.seat.watchers() == 1, "somebody who watches")
+    until(lambda: live.page.steering.watchers() == 1, "somebody who watches")
     ticks = live.page.run.ticks
     other.get_by_role("button", name="Pause").dispatch_event("click")
     other.get_by_text("You are watching").first.wait_for()
@@ -173,7 +173,7 @@ def test_a_second_browser_watches_takes_over_and_vanishes(live: Live) -> None:
     other.get_by_role("button", name="Record").dispatch_event("click")
     other.get_by_role("button", name="Stop recording").wait_for()
     other.close()
-    until(lambda: live.page.seat.watchers() == 0, "the browser's end")
+    until(lambda: live.page.steering.watchers() == 0, "the browser's end")
     live.settle(0.5)
     live.tab.get_by_role("button", name="Stop recording").click()
     until(lambda: live.page.run.recording is None, "the end of the log")

@@ -16,14 +16,14 @@ from pliant.errors import ConfigError
 from pliant.live.link.mailbox import Mailbox
 from pliant.live.link.messages import Aim, Flow, PushNow, StepOnce
 from pliant.live.loop.pace import Pace
-from pliant.live.loop.requests import Desk, Wishes
+from pliant.live.loop.requests import Requests, SharedState
 from pliant.live.loop.steered_plant import SteeredPlant
-from pliant.live.page.felt import environment_line, surface_line
+from pliant.live.page.estimates_panel import environment_line, surface_line
 from pliant.live.page.fields import group_of, nested
 from pliant.live.page.form import parsed
 from pliant.live.page.pushes import PushControls
 from pliant.live.page.world_form import SceneForm
-from pliant.live.server.closed import _quiet
+from pliant.live.server.protected import _quiet
 from pliant.quantity import quantity
 from pliant.robot import Robot
 from pliant.signals import Command
@@ -35,9 +35,9 @@ from pliant.simulation.imperfections.actuation import ActuationConfig
 
 def test_what_is_felt_is_a_line_with_units_and_uncertainty() -> None:
     felt = Environment(stiffness=19_876.0, damping=103.4, stiffness_std=312.0, damping_std=np.inf)
-    assert environment_line("tool", felt) == "believed at **tool**: stiffness 19900 ± 310 N/m, damping unknown"
+    assert environment_line("tool", felt) == "estimated at **tool**: stiffness 19900 ± 310 N/m, damping unknown"
     turned = FeltSurface(np.zeros(3), np.radians([3.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0]), np.radians(0.25))
-    assert surface_line("tool", turned) == "believed at **tool**: surface turned by 5 ± 0.25 °"
+    assert surface_line("tool", turned) == "estimated at **tool**: surface tilted by 5 ± 0.25 °"
 
 
 # ---------------------------------------------------------------------- mailbox
@@ -138,7 +138,7 @@ def still(plant: MujocoPlant) -> Command:
 @pytest.mark.parametrize("contact", ["mujoco", "explicit"])
 def test_another_floor_does_not_move_the_robot(contact: str) -> None:
     """State goes on across a change of the scene; what follows differs, since the floor leans now."""
-    plants = [SteeredPlant(leg(contact), Desk(), 0) for _ in range(2)]
+    plants = [SteeredPlant(leg(contact), SharedState(), 0) for _ in range(2)]
     worlds = [plant.init()[1] for plant in plants]
     for _ in range(50):
         for plant, world in zip(plants, worlds, strict=True):
@@ -147,7 +147,7 @@ def test_another_floor_does_not_move_the_robot(contact: str) -> None:
     assert physics is not None
     form = SceneForm(physics.scene)
     form.changed(("floor", "tilt"), 0.2)
-    plants[1]._desk.wishes = Wishes(scene=form.scene)
+    plants[1]._shared.requests = Requests(scene=form.scene)
     time_before = worlds[1].last.time
     measurements = [plant.step(still(physics), world)[0] for plant, world in zip(plants, worlds, strict=True)]
     assert measurements[1].time == pytest.approx(time_before + plants[1].period)
@@ -156,38 +156,38 @@ def test_another_floor_does_not_move_the_robot(contact: str) -> None:
 
 
 def test_pushes_act_for_their_time_and_no_longer() -> None:
-    plant = SteeredPlant(leg(), Desk(), 0)
-    free = SteeredPlant(leg(), Desk(), 0)
+    plant = SteeredPlant(leg(), SharedState(), 0)
+    free = SteeredPlant(leg(), SharedState(), 0)
     world, other = plant.init()[1], free.init()[1]
     frame = plant.physics.robot.frame_names[-1]  # type: ignore[union-attr]
-    plant._desk.pushes.append((frame, (30.0, 0.0, 0.0), 0.02))
+    plant._shared.pushes.append((frame, (30.0, 0.0, 0.0), 0.02))
     acting = 0
     for _ in range(40):
         plant.step(still(plant.physics), world)  # type: ignore[arg-type]
         free.step(still(plant.physics), other)  # type: ignore[arg-type]
-        acting += bool(plant._desk.acting)
+        acting += bool(plant._shared.acting)
     assert acting == 20
     assert not np.allclose(world.last.v, other.last.v, atol=1e-3)
     assert world.inner.pushes == []
 
 
 def test_imperfections_come_and_go_while_it_moves() -> None:
-    plant = SteeredPlant(leg(), Desk(), 0)
+    plant = SteeredPlant(leg(), SharedState(), 0)
     first, world = plant.init()
     slow = plant.built.model_copy(update={"actuation": ActuationConfig(bandwidth=5.0)})
     plant.rehearse(None, slow)
-    plant._desk.wishes = Wishes(flaws=slow)
+    plant._shared.requests = Requests(flaws=slow)
     torque = np.full(plant.physics.robot.n, 2.0)  # type: ignore[union-attr]
     command = replace(still(plant.physics), torque=torque)  # type: ignore[arg-type]
     reading, world = plant.step(command, world)
     assert np.all(np.abs(reading.torque - first.torque) < 0.2)  # 5 Hz have let a thirtieth through by now
-    plant._desk.wishes = Wishes(flaws=plant.built)
+    plant._shared.requests = Requests(flaws=plant.built)
     reading, world = plant.step(command, world)
     np.testing.assert_allclose(reading.torque, torque)
 
 
 def test_what_cannot_be_built_is_refused_beforehand() -> None:
-    plant = SteeredPlant(leg(), Desk(), 0)
+    plant = SteeredPlant(leg(), SharedState(), 0)
     late = Imperfections(computation_delay=0.0005)
     with pytest.raises(ConfigError, match="whole multiple"):
         plant.rehearse(None, late)

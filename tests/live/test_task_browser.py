@@ -38,7 +38,7 @@ def test_the_force_of_a_task_is_turned_on_the_first_tab(shown: Live) -> None:
 
 def believed(shown: Live) -> None:
     """The first tab says the stiffness that the controller believes; once it has pressed, near the table's 2e4 N/m."""
-    line = shown.tab.get_by_text("believed at").first
+    line = shown.tab.get_by_text("estimated at").first
     line.wait_for()
 
     def stiffness() -> float:

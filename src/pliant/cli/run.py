@@ -86,12 +86,12 @@ def _page(
     from pliant.cli.live import DEFAULT_HOST, announce, require_viser
 
     require_viser()
-    from pliant.live.server.beside import beside
+    from pliant.live.server.run_page import page_for_run
 
     def tell(url: str, exposed: bool) -> None:
         announce(console, complain, url, exposed)
 
-    with beside(study, config, experiment, DEFAULT_HOST, 0, folder, tell) as page:
+    with page_for_run(study, config, experiment, DEFAULT_HOST, 0, folder, tell) as page:
         yield {"experiment": page.experiment, "observers": page.observers, "pace": page.pace}
 
 

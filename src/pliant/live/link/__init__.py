@@ -1,1 +1,1 @@
-"""What loop and page say to each other."""
+"""Messages between the control loop and the page."""

@@ -1,4 +1,4 @@
-"""A box between two threads that never fills up and never makes the sender wait."""
+"""A queue between two threads that has a bounded size and never makes the sender wait."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Mailbox:
         self._queued: deque[Message] = deque(maxlen=_KEPT)
         self._filled = threading.Condition()
         self.waiting = False
-        """whether there is something to take; reading it costs no lock"""
+        """whether there is a message; reading it takes no lock"""
 
     def put(self, message: Message) -> None:
         """Adds a message. A newer one of the same kind replaces it."""
@@ -31,7 +31,7 @@ class Mailbox:
             self._filled.notify()
 
     def take(self) -> list[Message]:
-        """Everything there is: first the queued ones in their order, then the latest of each other kind."""
+        """All messages: first the queued ones in their order, then the latest of each other kind."""
         with self._filled:
             found = [*self._queued, *self._latest.values()]
             self._queued.clear()

@@ -1,4 +1,4 @@
-"""What loop and page tell each other. Frozen values; of each kind the latest one counts, unless it is `Queued`."""
+"""Messages between the loop and the page. Frozen values; only the latest of each kind counts, unless it is `Queued`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pliant.visual_shapes import Look
 
 
 class Queued:
-    """Marks messages of which every single one counts, in their order."""
+    """Marks messages that are all delivered, in their order."""
 
     __slots__ = ()
 
@@ -25,7 +25,7 @@ class Queued:
 
 @dataclass(frozen=True, slots=True)
 class Begin:
-    """Start a run anew."""
+    """Start a new run."""
 
     study: str
     config: CaseConfig
@@ -56,7 +56,7 @@ class Flaws:
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """Where the first task should go, seen from its own reference, and how hard it should press."""
+    """Offset of the first task from its own reference, and a factor on its desired force."""
 
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """m, world axes"""
@@ -65,13 +65,13 @@ class Aim:
 
 
 @dataclass(frozen=True, slots=True)
-class Turned:
-    """How the page's sliders turned the task."""
+class TaskScaling:
+    """Factors on the force and the speed of the task, from the sliders of the page."""
 
     force: float = 1.0
     """factor on every desired wrench"""
     speed: float = 1.0
-    """factor on how fast the task goes on; above zero"""
+    """factor on the speed of the task; above zero"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,14 +87,14 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class StepOnce(Queued):
-    """Some periods, while paused."""
+    """Run some periods while paused."""
 
     periods: int = 1
 
 
 @dataclass(frozen=True, slots=True)
 class PushNow(Queued):
-    """A constant force on a frame from now on."""
+    """Apply a constant force to a frame from now on."""
 
     frame: str
     force: tuple[float, float, float]
@@ -105,11 +105,11 @@ class PushNow(Queued):
 
 @dataclass(frozen=True, slots=True)
 class Pull:
-    """A force that follows somebody's hand. It ends by itself unless it is renewed: hands and browsers vanish."""
+    """A force that a user drags with the mouse. It ends by itself unless it is renewed, because a browser may close."""
 
     frame: str
     force: tuple[float, float, float]
-    """N, world axes; zero lets go"""
+    """N, world axes; zero ends it"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,16 +124,16 @@ class Record(Queued):
 
 @dataclass(frozen=True, slots=True)
 class Ready(Queued):
-    """A run begins: what there is to see and to turn."""
+    """A run begins: what can be shown and changed."""
 
     run: int
-    """number of the run, which pictures and samples carry too"""
+    """number of the run; pictures and samples carry it too"""
     study: str
     config: CaseConfig
     looks: tuple[Look, ...]
     bodies: int
     frames: tuple[str, ...]
-    """of the robot, that can be pushed"""
+    """frames of the robot that can be pushed"""
     columns: tuple[str, ...]
     """of the samples that follow"""
     period: float
@@ -148,8 +148,8 @@ class Ready(Queued):
 
 
 @dataclass(frozen=True, slots=True)
-class Looks(Queued):
-    """The scene changed its shape."""
+class SceneChanged(Queued):
+    """The shapes of the scene have changed."""
 
     looks: tuple[Look, ...]
     scene: Scene
@@ -157,7 +157,7 @@ class Looks(Queued):
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """One instant, to be drawn."""
+    """The scene at one instant."""
 
     run: int
     time: float
@@ -173,27 +173,28 @@ class Picture:
     target: Array | None
     """(3,) m, where it should be; None without a task"""
     nominal: Array | None
-    """(3,) m, the same without what the page added"""
+    """(3,) m, the same without the offset from the page"""
     contacts: Mapping[str, tuple[Array, Array]]
     """frame → its position (3,) m and the force (3,) N on the robot there"""
     asked: Array
-    """(3,) N that the controller or the reference asks of the first frame's contact, as a reaction on the robot"""
+    """(3,) N, desired contact force of the first frame (from the controller or the reference), as a reaction on the
+    robot"""
     predicted_path: Array | None = None
     """(N, 3) m"""
     predicted_force: Array | None = None
     """(N, 3) N"""
     pushes: Mapping[str, tuple[Array, Array]] = field(default_factory=dict[str, tuple[Array, Array]])
-    """frame → its position (3,) m and the force (3,) N that pushes it"""
+    """frame → its position (3,) m and the external force (3,) N on it"""
     phase: str = ""
     environments: Mapping[str, Environment] = field(default_factory=dict[str, Environment])
-    """frame → what it is believed to touch, where that is estimated"""
+    """frame → estimated stiffness and damping of the contact, where they are estimated"""
     surfaces: Mapping[str, FeltSurface] = field(default_factory=dict[str, FeltSurface])
-    """frame → how the surface is believed to stand that it touched, where that is estimated"""
+    """frame → estimated orientation of the surface it touched, where that is estimated"""
 
 
 @dataclass(frozen=True, slots=True)
 class Pulse:
-    """How the loop fares."""
+    """State of the loop: time, speed, missed deadlines."""
 
     time: float
     """s"""
@@ -205,12 +206,12 @@ class Pulse:
     ticks: int
     recording: Path | None
     ended: str | None = None
-    """why nothing moves any more"""
+    """why the run has stopped"""
 
 
 @dataclass(frozen=True, slots=True)
 class Samples(Queued):
-    """A piece of the curves."""
+    """New samples of the curves."""
 
     run: int
     """number of the run that it belongs to"""
@@ -220,13 +221,13 @@ class Samples(Queued):
 
 @dataclass(frozen=True, slots=True)
 class Note(Queued):
-    """Something that people should read."""
+    """A message for the user."""
 
     kind: Literal["refused", "failed", "recorded", "note"]
     text: str
 
 
 Message = (
-    Begin | Parameters | Surroundings | Flaws | Aim | Turned | Flow | StepOnce | PushNow | Pull | Record
-    | Ready | Looks | Picture | Pulse | Samples | Note
+    Begin | Parameters | Surroundings | Flaws | Aim | TaskScaling | Flow | StepOnce | PushNow | Pull | Record
+    | Ready | SceneChanged | Picture | Pulse | Samples | Note
 )  # fmt: skip

@@ -31,24 +31,24 @@ class Link:
             thread.start()
 
     def send(self, message: Message) -> None:
-        """Gives a message to the other side, some time soon."""
+        """Sends a message to the other side without waiting."""
         self._outgoing.put(message)
 
     @property
     def waiting(self) -> bool:
-        """Whether something came."""
+        """Whether a message has arrived."""
         return self._incoming.waiting
 
     def take(self) -> list[Message]:
-        """What came since the last call."""
+        """The messages since the last call."""
         return self._incoming.take()
 
     def wait(self, seconds: float) -> bool:
-        """Waits until something comes. Returns whether it did."""
+        """Waits for a message. Returns whether one has arrived."""
         return self._incoming.wait(seconds)
 
     def close(self) -> None:
-        """Lets go of the other side, after what was said last is on its way."""
+        """Closes the connection after the last messages have been sent."""
         for _ in range(50):
             if not self._outgoing.waiting or self.closed.wait(0.01):
                 break

@@ -1,4 +1,4 @@
-"""Several may watch, one steers."""
+"""Several browsers may watch, one steers."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import threading
 import viser
 
 
-class Seat:
-    """Who steers: the first browser that comes, until it goes or another one takes over."""
+class SteeringLock:
+    """Which browser steers: the first that connects, until it disconnects or another one takes over."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._lock = threading.Lock()
@@ -19,7 +19,7 @@ class Seat:
 
     @property
     def holder(self) -> int | None:
-        """Number of the browser that steers; None if nobody is there."""
+        """Number of the browser that steers; None if none is connected."""
         return self._holder
 
     @property
@@ -36,7 +36,7 @@ class Seat:
             self._holder = client
 
     def watchers(self) -> int:
-        """How many look on without steering."""
+        """How many browsers watch without steering."""
         return max(0, len(self._server.get_clients()) - self.taken)
 
     async def _came(self, client: viser.ClientHandle) -> None:

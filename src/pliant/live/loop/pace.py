@@ -1,4 +1,4 @@
-"""The clock of a loop that people watch: wall time, slow motion, pause, single steps."""
+"""The clock of a loop with a live page: wall time, slow motion, pause, single steps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _IDLE = 0.02  # s between two looks at the mailbox while paused
 
 @dataclass(frozen=True, slots=True)
 class PaceReport:
-    """How time passed lately."""
+    """Speed of the loop since the last report."""
 
     real_time_factor: float
     playing: bool
@@ -25,9 +25,9 @@ class Pace:
 
     Args:
         period: s of simulated time per tick.
-        attend: looks after messages; returns quickly.
-        wait: sleeps until a message may have come, at most so many s.
-        paced: False: as fast as it goes.
+        attend: handles messages; returns quickly.
+        wait: sleeps until a message may have arrived, at most the given number of s.
+        paced: False: as fast as possible.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Pace:
         self._ticks += 1
 
     def report(self) -> PaceReport:
-        """What happened since the last report that was at least half a second before."""
+        """What happened since the last report, which was at least half a second ago."""
         now = time.perf_counter()
         start, ticks = self._mark
         if now - start >= 0.5:
@@ -64,7 +64,7 @@ class Pace:
         return PaceReport(self._factor, self.flow.playing)
 
     def _until_due(self, due: float) -> float:
-        """Waits until `due`. Returns when the tick really was due, which moves with pauses and with lag."""
+        """Waits until `due`. Returns the time at which the tick was due; pauses and lag shift it."""
         self._attend()
         while not self.stopped:
             if not self.flow.playing:

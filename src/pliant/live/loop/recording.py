@@ -1,4 +1,4 @@
-"""A recorder that people switch on and off while the loop runs."""
+"""A recorder that users switch on and off while the loop runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class SwitchedRecorder:
     """An observer that records between `start` and `stop`.
 
     Args:
-        info: what every log says about the run.
+        info: identity of the run, for each log.
         channels: units of diagnostics.
     """
 
@@ -27,7 +27,7 @@ class SwitchedRecorder:
 
     @property
     def path(self) -> Path | None:
-        """File that is being written."""
+        """File to which the recorder writes."""
         return None if self._recorder is None else self._recorder.path
 
     def start(self, path: Path, info: RunInfo, scene: DrawnScene | None = None) -> None:
@@ -64,4 +64,4 @@ class SwitchedRecorder:
                 return
 
     trouble: str = ""
-    """why the last log ended by itself; whoever reports it clears it"""
+    """why the last log ended by itself; the caller that reports it clears it"""

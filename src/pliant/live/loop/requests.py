@@ -1,4 +1,4 @@
-"""What people want at the moment: the values that the page changes and the loop reads between two periods."""
+"""Requests of the page: values that it changes and that the loop reads between two periods."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from typing import Any
 import numpy as np
 
 from pliant.interfaces import Controller
-from pliant.live.link.messages import Aim, Pull, Turned
+from pliant.live.link.messages import Aim, Pull, TaskScaling
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import Imperfections, Push, Scene
 from pliant.spatial import Array
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
-    """Everything that is asked of a running loop. Swapped whole."""
+class Requests:
+    """All requests to a running loop. Replaced as a whole."""
 
     tunings: Mapping[str, ImpedanceTuning] = field(default_factory=lambda: MappingProxyType({}))
     """frame → tuning of the task there; the others keep their own"""
     whole: Any = None
-    """frozen tuning of the whole controller; None: its own"""
+    """frozen tuning of the whole controller; None: the controller's own"""
     controller: Controller[Any] | None = None
-    """takes over from the one that runs; None: nobody does"""
+    """replaces the running controller; None: no replacement"""
     aim: Aim = field(default_factory=Aim)
-    turned: Turned = field(default_factory=Turned)
+    scaling: TaskScaling = field(default_factory=TaskScaling)
     scene: Scene | None = None
     """None: the one the plant was built with"""
     flaws: Imperfections | None = None
@@ -38,16 +38,18 @@ class Wishes:
     """s of wall time"""
 
 
-class Desk:
-    """Where the wishes lie. The loop's wrappers read the wishes once a period and leave behind what they did."""
+class SharedState:
+    """What the session shares with the wrappers of the loop: the requests, which they read once a period, and what they
+    did."""
 
     def __init__(self) -> None:
-        self.wishes = Wishes()
+        self.requests = Requests()
         self.pushes: list[tuple[str, tuple[float, float, float], float]] = []
         """(frame, force in N, duration in s) that wait for the next period"""
         self.offset: Array = np.zeros(3)
-        """(3,) m by which the first task's target is moved at present"""
+        """(3,) m, present offset of the first task's target"""
         self.clock = -math.inf
-        """s of the task: it goes faster or slower than that of the loop where the page turned its speed"""
+        """s, clock of the task: it differs from the clock of the loop where the page has changed the speed of the
+        task"""
         self.acting: tuple[Push, ...] = ()
         """pushes that act on the robot at present"""

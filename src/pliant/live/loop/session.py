@@ -1,4 +1,4 @@
-"""One run that people steer: the loop of a study with the desk wired in."""
+"""One run with a live page: the loop of a study inside wrappers that carry out the requests of the page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from pliant.live.link.messages import (
     Aim,
     Flaws,
     Flow,
-    Looks,
     Message,
     Note,
     Parameters,
@@ -22,13 +21,14 @@ from pliant.live.link.messages import (
     PushNow,
     Ready,
     Record,
+    SceneChanged,
     StepOnce,
     Surroundings,
-    Turned,
+    TaskScaling,
 )  # fmt: skip
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.recording import SwitchedRecorder
-from pliant.live.loop.requests import Desk, Wishes
+from pliant.live.loop.requests import Requests, SharedState
 from pliant.live.loop.steered_controller import SteeredController, with_core
 from pliant.live.loop.steered_plant import SteeredPlant
 from pliant.live.loop.steered_source import steered
@@ -39,7 +39,7 @@ from pliant.visual_shapes import looks_of
 
 
 class Session:
-    """A wired loop, what people ask of it, and what they see of it.
+    """A wired loop, the requests of the page, and what the page shows.
 
     Args:
         study: that the configuration belongs to.
@@ -47,7 +47,7 @@ class Session:
         send: takes a message for the page and returns at once.
         run: number of the run.
         experiment: the loop, if it was built already.
-        wishes: what people asked for before it starts.
+        requests: requests from before the start.
         restarts: whether the page may choose another case.
 
     Raises:
@@ -63,37 +63,37 @@ class Session:
         run: int,
         *,
         experiment: Experiment | None = None,
-        wishes: Wishes | None = None,
+        requests: Requests | None = None,
         restarts: bool = True,
     ) -> None:
         self.study, self.config, self.built_for = study, config, config
         self._send, self._run, self._restarts = send, run, restarts
         built = self.built = experiment or study.build(config)
-        self.desk = Desk()
-        self.desk.wishes = wishes or Wishes()
-        self.plant = SteeredPlant(built.plant, self.desk, config.seed)
+        self.shared = SharedState()
+        self.shared.requests = requests or Requests()
+        self.plant = SteeredPlant(built.plant, self.shared, config.seed)
         if self.plant.physics is None:
             raise ConfigError(f"the page can show simulated robots only, not a {type(built.plant).__name__}")
         self._core = built.controller
         self.experiment = replace(
             built,
             plant=self.plant,
-            source=steered(built.source, self.desk),
-            controller=SteeredController(built.controller, self.desk),
+            source=steered(built.source, self.shared),
+            controller=SteeredController(built.controller, self.shared),
         )
         self.recorder = SwitchedRecorder(run_info(study, config, built), built.channels)
-        self._physics = self.plant.rehearse(self.desk.wishes.scene, None) or self.plant.physics
-        self.watch = Watch(send, built.robot, self._physics, self.desk, run)
+        self._physics = self.plant.rehearse(self.shared.requests.scene, None) or self.plant.physics
+        self.watch = Watch(send, built.robot, self._physics, self.shared, run)
         self.watch.period = built.plant.period
         self.watch.recording = lambda: self.recorder.path
         self._announced = False
 
     def observe(self, pace: Pace) -> None:
-        """Lets the page see how time passes."""
+        """Reports to the page how time passes."""
         self.watch.report = pace.report
 
     def announce(self) -> None:
-        """Tells the page what there is, as soon as the first tick has shown it."""
+        """Tells the page what can be shown and changed, after the first tick."""
         columns, physics = self.watch.columns, self._physics
         if self._announced or columns is None:
             return
@@ -110,7 +110,7 @@ class Session:
                 columns=columns.names,
                 period=self.plant.period,
                 scene=physics.scene,
-                flaws=self.desk.wishes.flaws or self.plant.built,
+                flaws=self.shared.requests.flaws or self.plant.built,
                 warnings=self.experiment.warnings,
                 restarts=self._restarts,
             )
@@ -118,21 +118,22 @@ class Session:
         self.watch.refresh(now=True)
 
     def periods(self, seconds: float) -> Iterator[int]:
-        """One item a period until so many s of the task are done, however fast it goes."""
+        """One item per period until the given time of the task is reached, at whatever speed."""
         tick = 0
-        while tick == 0 or self.desk.clock < seconds - 1.5 * self.plant.period:
+        while tick == 0 or self.shared.clock < seconds - 1.5 * self.plant.period:
             yield tick
             tick += 1
 
     def obey(self, message: Message, pace: Pace) -> None:
-        """Does what the page asks; what cannot be done is refused with the reason, and nothing changes."""
+        """Carries out a request of the page; a request that is not possible is refused with the reason, and nothing
+        changes."""
         try:
             self._obey(message, pace)
         except PliantError as error:
             self._send(Note("refused", str(error)))
 
     def _obey(self, message: Message, pace: Pace) -> None:
-        wishes = self.desk.wishes
+        requests = self.shared.requests
         match message:
             case Flow():
                 pace.flow = message
@@ -140,22 +141,22 @@ class Session:
             case StepOnce():
                 pace.steps += message.periods
             case Aim():
-                self.desk.wishes = replace(wishes, aim=message)
-            case Turned():
-                self.desk.wishes = replace(wishes, turned=message)
+                self.shared.requests = replace(requests, aim=message)
+            case TaskScaling():
+                self.shared.requests = replace(requests, scaling=message)
             case Pull():
                 self.experiment.robot.frame_id(message.frame)
-                self.desk.wishes = replace(wishes, pull=message, pulled_at=time.monotonic())
+                self.shared.requests = replace(requests, pull=message, pulled_at=time.monotonic())
             case PushNow():
                 self.experiment.robot.frame_id(message.frame)
-                self.desk.pushes.append((message.frame, message.force, message.duration))
+                self.shared.pushes.append((message.frame, message.force, message.duration))
             case Parameters():
                 self.retune(message.config)
             case Surroundings():
                 self._surround(message)
             case Flaws():
                 self.plant.rehearse(None, message.config)
-                self.desk.wishes = replace(wishes, flaws=message.config)
+                self.shared.requests = replace(requests, flaws=message.config)
             case Record():
                 self._record(message)
             case _:
@@ -169,12 +170,12 @@ class Session:
         else:
             change = retuning(before, after, config, self.experiment.robot, self.plant.period)
         successor = None if change.controller is None else with_core(self._core, change.controller)
-        wishes = self.desk.wishes
-        self.desk.wishes = replace(
-            wishes,
+        requests = self.shared.requests
+        self.shared.requests = replace(
+            requests,
             tunings=change.tunings,
             whole=change.whole,
-            controller=successor or wishes.controller,
+            controller=successor or requests.controller,
         )
         self.config = config
 
@@ -182,10 +183,10 @@ class Session:
         physics = self.plant.rehearse(message.scene, None)
         if physics is None:
             return
-        self.desk.wishes = replace(self.desk.wishes, scene=message.scene)
+        self.shared.requests = replace(self.shared.requests, scene=message.scene)
         self._physics = physics
         self.watch.show(physics)
-        self._send(Looks(looks_of(physics.model, self.experiment.robot.n), message.scene))
+        self._send(SceneChanged(looks_of(physics.model, self.experiment.robot.n), message.scene))
 
     def _record(self, message: Record) -> None:
         if message.path is None:
@@ -196,7 +197,7 @@ class Session:
         self.watch.refresh(now=True)
 
     def finish_recording(self, failure: str | None = None) -> None:
-        """Ends the log, if one is written."""
+        """Ends the log that is being written, if there is one."""
         try:
             path = self.recorder.stop(failure)
         except PliantError as error:

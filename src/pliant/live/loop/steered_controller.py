@@ -7,44 +7,44 @@ from dataclasses import dataclass
 from typing import Any
 
 from pliant.interfaces import Controller
-from pliant.live.loop.requests import Desk
+from pliant.live.loop.requests import SharedState
 from pliant.signals import Command, Estimate, Reference
 
 
 @dataclass(frozen=True, slots=True)
 class SteeredControllerState:
-    """Who controls at present, and its state."""
+    """The active controller and its state."""
 
     controller: Controller[Any]
     inner: Any
-    wish: Controller[Any] | None
-    """the last successor that was asked for"""
+    request: Controller[Any] | None
+    """the last replacement that was requested"""
 
 
 class SteeredController(Controller[SteeredControllerState]):
-    """Another controller, until the desk names a successor, which starts at the estimate of that period.
+    """A controller that a request can replace; the replacement starts at the estimate of that period.
 
     Args:
-        inner: who controls at first.
-        desk: read once a step.
+        inner: the controller at the start.
+        shared: the requests, read once a step.
     """
 
-    def __init__(self, inner: Controller[Any], desk: Desk) -> None:
-        self.inner, self._desk = inner, desk
+    def __init__(self, inner: Controller[Any], shared: SharedState) -> None:
+        self.inner, self._shared = inner, shared
 
     def init(self, estimate: Estimate) -> SteeredControllerState:
-        wish = self._desk.wishes.controller
-        controller = wish or self.inner
-        return SteeredControllerState(controller, controller.init(estimate), wish)
+        request = self._shared.requests.controller
+        controller = request or self.inner
+        return SteeredControllerState(controller, controller.init(estimate), request)
 
     def step(
         self, estimate: Estimate, reference: Reference, state: SteeredControllerState
     ) -> tuple[Command, SteeredControllerState]:
-        wish = self._desk.wishes.controller
-        if wish is not state.wish and wish is not None:
-            state = SteeredControllerState(wish, wish.init(estimate), wish)
+        request = self._shared.requests.controller
+        if request is not state.request and request is not None:
+            state = SteeredControllerState(request, request.init(estimate), request)
         command, inner = state.controller.step(estimate, reference, state.inner)
-        return command, SteeredControllerState(state.controller, inner, state.wish)
+        return command, SteeredControllerState(state.controller, inner, state.request)
 
 
 def with_core(controller: Controller[Any], core: Controller[Any]) -> Controller[Any]:

@@ -10,12 +10,12 @@ import numpy as np
 
 from pliant.interfaces import Compensation, Plant
 from pliant.live.link.messages import Pull
-from pliant.live.loop.requests import Desk
+from pliant.live.loop.requests import SharedState
 from pliant.signals import Command, Measurement, Truth
 from pliant.simulation import Imperfections, ImperfectPlant, MujocoPlant, Push, Scene, World
 from pliant.simulation.imperfections.torque_loop import TorqueLoopConfig
 
-_LET_GO = 0.5  # s of wall time after which a hand that says nothing has let go
+_LET_GO = 0.5  # s of wall time without a new message after which a dragged force ends
 
 
 @dataclass(slots=True)
@@ -24,28 +24,28 @@ class SteeredWorld:
 
     plant: Plant[Any]
     physics: MujocoPlant | None
-    """at the bottom of `plant`"""
+    """the innermost plant of `plant`"""
     inner: Any
     scene: Scene | None
     flaws: Imperfections | None
-    """the wishes that `plant` was built for"""
+    """the requests that `plant` was built for"""
     last: Measurement
 
 
 class SteeredPlant(Plant[SteeredWorld]):
-    """Another plant, rebuilt round the same bodies whenever the desk asks for other surfaces or imperfections.
+    """A plant that is rebuilt around the same bodies when a request changes surfaces or imperfections.
 
-    Positions and velocities go on; commands and readings under way, filters and bristles start anew. Only a
+    Positions and velocities continue; delayed commands and readings, filters and friction bristles start again. Only a
     `MujocoPlant`, bare or in an `ImperfectPlant`, can be changed; any other plant runs as it is.
 
     Args:
         inner: the plant as the study built it.
-        desk: read once a step.
+        shared: the requests, read once a step.
         seed: of the draws of imperfections.
     """
 
-    def __init__(self, inner: Plant[Any], desk: Desk, seed: int) -> None:
-        self.inner, self._desk, self._seed = inner, desk, seed
+    def __init__(self, inner: Plant[Any], shared: SharedState, seed: int) -> None:
+        self.inner, self._shared, self._seed = inner, shared, seed
         self.period = inner.period
         self.physics = physics_of(inner)
         """None if the plant cannot be changed"""
@@ -61,8 +61,8 @@ class SteeredPlant(Plant[SteeredWorld]):
         return measurement, SteeredWorld(self.inner, self.physics, world, None, None, measurement)
 
     def step(self, command: Command, world: SteeredWorld) -> tuple[Measurement, SteeredWorld]:
-        wishes = self._desk.wishes
-        if wishes.scene is not world.scene or wishes.flaws is not world.flaws:
+        requests = self._shared.requests
+        if requests.scene is not world.scene or requests.flaws is not world.flaws:
             self._rebuild(world)
         self._push(world)
         world.last, world.inner = world.plant.step(command, world.inner)
@@ -72,7 +72,7 @@ class SteeredPlant(Plant[SteeredWorld]):
         return world.plant.truth(world.inner)
 
     def rehearse(self, scene: Scene | None, flaws: Imperfections | None) -> MujocoPlant | None:
-        """Builds what a wish asks for and throws it away, except for its physics. Raises what is wrong with it."""
+        """Builds the requested plant as a test, keeps only its physics. Raises the error if it cannot be built."""
         if self.physics is None:
             return None
         physics = self.physics if scene is None else with_scene(self.physics, scene)
@@ -81,14 +81,14 @@ class SteeredPlant(Plant[SteeredWorld]):
         return physics
 
     def _rebuild(self, world: SteeredWorld) -> None:
-        wishes = self._desk.wishes
+        requests = self._shared.requests
         if self.physics is None or world.physics is None:
             return
         old: World = world.inner.inner if isinstance(world.plant, ImperfectPlant) else world.inner
-        physics = world.physics if wishes.scene is None else with_scene(self.physics, wishes.scene)
+        physics = world.physics if requests.scene is None else with_scene(self.physics, requests.scene)
         measurement, inner = physics.resume(old)
-        world.physics, world.scene, world.flaws = physics, wishes.scene, wishes.flaws
-        flaws = wishes.flaws or self.built
+        world.physics, world.scene, world.flaws = physics, requests.scene, requests.flaws
+        flaws = requests.flaws or self.built
         if not isinstance(self.inner, ImperfectPlant) and flaws == self.built:
             world.plant, world.inner = physics, inner
             return
@@ -102,21 +102,21 @@ class SteeredPlant(Plant[SteeredWorld]):
             return
         bottom: World = world.inner.inner if isinstance(world.plant, ImperfectPlant) else world.inner
         now = float(bottom.data.time)
-        if self._desk.pushes:
-            waiting, self._desk.pushes = self._desk.pushes, []
+        if self._shared.pushes:
+            waiting, self._shared.pushes = self._shared.pushes, []
             bottom.pushes += [Push(frame, force, now, duration) for frame, force, duration in waiting]
         acting = [push for push in bottom.pushes if push.at(now) and not isinstance(push, _Hand)]
-        pull, wishes = self._desk.wishes.pull, self._desk.wishes
-        if pull is not None and any(pull.force) and time.monotonic() - wishes.pulled_at < _LET_GO:
+        pull, requests = self._shared.requests.pull, self._shared.requests
+        if pull is not None and any(pull.force) and time.monotonic() - requests.pulled_at < _LET_GO:
             acting.append(_hand(pull, now))
         if bottom.pushes or acting:
             bottom.pushes = acting
         built = [push for push in world.physics.pushes if push.at(now)]
-        self._desk.acting = (*built, *acting)
+        self._shared.acting = (*built, *acting)
 
 
 class _Hand(Push):
-    """A push that follows a hand: made anew every period."""
+    """A push that a user drags: made again in each period."""
 
 
 def _hand(pull: Pull, now: float) -> _Hand:
@@ -124,7 +124,7 @@ def _hand(pull: Pull, now: float) -> _Hand:
 
 
 class _Resumed(Plant[World]):
-    """A plant whose start is where another one stopped."""
+    """A plant that starts in the state in which another one stopped."""
 
     def __init__(self, inner: MujocoPlant, measurement: Measurement, world: World) -> None:
         self.inner, self.period, self.joints = inner, inner.period, inner.joints

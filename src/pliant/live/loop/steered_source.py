@@ -1,4 +1,4 @@
-"""References that people change while they are followed."""
+"""References that users change during a run."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pliant.interfaces import ReferenceSource
-from pliant.live.loop.requests import Desk
+from pliant.live.loop.requests import SharedState
 from pliant.references.exploration.haptic_exploration import HapticExploration
 from pliant.signals import Estimate, ImpedanceTuning, Preview, Reference, TaskReference
 from pliant.spatial import Array
 
-HURRY = 1.0  # 1/s: so fast may the speed of a task be turned
+SPEED_RATE_LIMIT = 1.0  # 1/s, largest rate of change of the task's speed factor
 TARGET_SPEED = 0.5  # m/s: a target that jumps would put energy into the robot that no ledger books
 
 
 class Shift(NamedTuple):
-    """What the page adds to the first task at present."""
+    """Present offset of the first task."""
 
     offset: Array
     """(3,) m"""
@@ -30,7 +30,7 @@ class Shift(NamedTuple):
 
 
 class SteeredSourceState(NamedTuple):
-    """State of the source inside, and how far the target was moved."""
+    """State of the inner source, and the offset of the target."""
 
     inner: Any
     time: float
@@ -44,56 +44,56 @@ class SteeredSourceState(NamedTuple):
 
 
 class SteeredSource(ReferenceSource[SteeredSourceState]):
-    """Another source's references with what the desk says: other tunings, another place, another force.
-
-    The place moves at `TARGET_SPEED` at most; tunings and force are swapped whole between two ticks. Where the speed of
-    the task is turned, the source inside lives on a clock of its own, whose rate changes by `HURRY` at most.
+    """References of another source with the requested changes: tunings, offset of the target, force. The offset moves
+    at `TARGET_SPEED` at most; tunings and force are swapped whole between two ticks. Where the speed of the task is
+    changed, the inner source has a clock of its own, whose rate changes by `SPEED_RATE_LIMIT` at most.
 
     Args:
         inner: where the references come from.
-        desk: read once a step; told how far the target was moved.
+        shared: read once a step; the offset of the target is written to it.
     """
 
-    def __init__(self, inner: ReferenceSource[Any], desk: Desk) -> None:
-        self.inner, self._desk = inner, desk
+    def __init__(self, inner: ReferenceSource[Any], shared: SharedState) -> None:
+        self.inner, self._shared = inner, shared
 
     def init(self, estimate: Estimate) -> SteeredSourceState:
         return SteeredSourceState(self.inner.init(estimate), estimate.time, np.zeros(3), estimate.time)
 
     def step(self, estimate: Estimate, state: SteeredSourceState) -> tuple[Reference, SteeredSourceState]:
-        wishes, duration = self._desk.wishes, estimate.time - state.time
-        most = HURRY * max(duration, 0.0)
-        rate = state.rate + min(max(wishes.turned.speed - state.rate, -most), most)
+        requests, duration = self._shared.requests, estimate.time - state.time
+        most = SPEED_RATE_LIMIT * max(duration, 0.0)
+        rate = state.rate + min(max(requests.scaling.speed - state.rate, -most), most)
         real = state.rate == rate == 1.0 and state.clock == state.time
         clock = estimate.time if real else state.clock + 0.5 * (state.rate + rate) * duration
         reference, inner = self.inner.step(estimate if real else replace(estimate, time=clock), state.inner)
         if not real:
             bend = (rate - state.rate) / duration if duration > 0.0 else 0.0
             reference = _on_clock(reference, estimate.time, rate, bend)
-        self._desk.clock = clock
-        force = wishes.aim.force_scale * wishes.turned.force
-        shift = _moved(state.offset, np.array(wishes.aim.offset), duration, force)
-        self._desk.offset = shift.offset
-        if wishes.tunings:
-            reference = _retuned(reference, wishes.tunings)
-        if wishes.whole is not None:
-            reference = replace(reference, tuning=wishes.whole)
+        self._shared.clock = clock
+        force = requests.aim.force_scale * requests.scaling.force
+        shift = _moved(state.offset, np.array(requests.aim.offset), duration, force)
+        self._shared.offset = shift.offset
+        if requests.tunings:
+            reference = _retuned(reference, requests.tunings)
+        if requests.whole is not None:
+            reference = replace(reference, tuning=requests.whole)
         if reference.tasks and (shift.force_scale != 1.0 or np.any(shift.offset) or np.any(shift.velocity)):
             reference = _shifted(reference, shift)
         return reference, SteeredSourceState(inner, estimate.time, shift.offset, clock, rate)
 
 
-def steered(source: ReferenceSource[Any], desk: Desk) -> ReferenceSource[Any]:
-    """A source with what the desk says; an exploration hears it first, since it looks for the place and the force."""
+def steered(source: ReferenceSource[Any], shared: SharedState) -> ReferenceSource[Any]:
+    """A source with the requested changes; in front of an exploration, they are applied to the input of the
+    exploration."""
     if isinstance(source, HapticExploration):
         exploring = copy.copy(source)
-        exploring.inner = SteeredSource(source.inner, desk)
+        exploring.inner = SteeredSource(source.inner, shared)
         return exploring
-    return SteeredSource(source, desk)
+    return SteeredSource(source, shared)
 
 
 def _moved(offset: Array, wanted: Array, duration: float, force_scale: float) -> Shift:
-    """One step towards the wanted offset."""
+    """One step towards the requested offset."""
     way = wanted - offset
     distance = float(np.linalg.norm(way))
     if distance == 0.0 or duration <= 0.0:
@@ -103,7 +103,8 @@ def _moved(offset: Array, wanted: Array, duration: float, force_scale: float) ->
 
 
 def _on_clock(reference: Reference, time: float, rate: float, bend: float) -> Reference:
-    """What was said on a clock that goes at another rate (its derivative: bend, 1/s), at a time of the loop's."""
+    """A reference of a clock with another rate, converted to the clock of the loop. Args: bend: 1/s, derivative of the
+    rate."""
     tasks = tuple(
         replace(
             task,

@@ -17,14 +17,14 @@ from pliant.signals import ImpedanceTuning
 
 @dataclass(frozen=True, slots=True)
 class ParameterChange:
-    """What has to change so that a running controller has other parameters."""
+    """The changes that give a running controller other parameters."""
 
     tunings: Mapping[str, ImpedanceTuning]
     """frame → tuning, carried by the references"""
     whole: Any
     """tuning of the whole controller, carried by the references; None if it takes none"""
     controller: Controller[Any] | None
-    """a successor, where a parameter changed that no reference carries"""
+    """a replacement, where a parameter changed that no reference carries"""
 
 
 def online_fields(config: CaseConfig) -> frozenset[str]:
@@ -76,7 +76,7 @@ def parameters_of(config: CaseConfig) -> ControllerConfig | None:
 def retuning(
     before: ControllerConfig, after: ControllerConfig, config: CaseConfig, robot: Robot, period: float
 ) -> ParameterChange:
-    """How to get from one set of parameters to another.
+    """The changes from one set of parameters to another.
 
     Args:
         before: of the controller that runs.

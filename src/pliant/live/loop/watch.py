@@ -10,7 +10,7 @@ import numpy as np
 
 from pliant.live.link.messages import Message, Picture, Pulse, Samples
 from pliant.live.loop.pace import PaceReport
-from pliant.live.loop.requests import Desk
+from pliant.live.loop.requests import SharedState
 from pliant.live.page.curves import Columns
 from pliant.live.page.picture import picture
 from pliant.robot import Robot
@@ -19,23 +19,25 @@ from pliant.simulation import MujocoPlant
 from pliant.visual_shapes import Poser
 
 SCENE_PERIOD = 1.0 / 30.0  # s of wall time
-CURVE_PERIOD = 0.1  # s of wall time between two pieces of the curves
+CURVE_PERIOD = 0.1  # s of wall time between two messages with samples
 _SAMPLE_PERIOD = 0.02  # s of simulated time between two points of a curve
 
 
 class Watch:
-    """Sends pictures at 30 Hz and pieces of the curves at 10 Hz; every other tick costs it next to nothing.
+    """Sends pictures at 30 Hz and samples of the curves at 10 Hz; other ticks cost almost nothing.
 
     Args:
         send: takes a message and returns at once.
         robot: of the loop.
         plant: its simulation.
-        desk: for what people added.
-        run: number of this run, in every piece of the curves.
+        shared: state of the requests.
+        run: number of this run, sent with the samples.
     """
 
-    def __init__(self, send: Callable[[Message], None], robot: Robot, plant: MujocoPlant, desk: Desk, run: int) -> None:
-        self._send, self._robot, self._desk, self._run = send, robot, desk, run
+    def __init__(
+        self, send: Callable[[Message], None], robot: Robot, plant: MujocoPlant, shared: SharedState, run: int
+    ) -> None:
+        self._send, self._robot, self._shared, self._run = send, robot, shared, run
         self._body, self._ghost = Poser(plant.model, robot.n), Poser(plant.model, robot.n)
         self.report: Callable[[], PaceReport] = lambda: PaceReport(0.0, True)
         self.recording: Callable[[], Path | None] = lambda: None
@@ -67,12 +69,12 @@ class Watch:
         self._last = tick
         now = tick.measurement.time
         if now >= self._next_sample:
-            self._rows.append(self._columns.row(tick, self._desk.acting, self._slowest))
+            self._rows.append(self._columns.row(tick, self._shared.acting, self._slowest))
             self._next_sample, self._slowest = now + _SAMPLE_PERIOD - 1e-9, 0.0
         self.refresh()
 
     def refresh(self, *, now: bool = False) -> None:
-        """Sends what is due; also called while the loop is paused."""
+        """Sends what is due; called while the loop is paused as well."""
         clock = time.monotonic()
         if self._last is None or self._columns is None:
             return
@@ -87,10 +89,10 @@ class Watch:
                 self._rows = []
 
     def _picture(self, tick: Tick, columns: Columns) -> Picture:
-        return picture(self._run, tick, columns, self._body, self._ghost, self._desk.acting, self._desk.offset)
+        return picture(self._run, tick, columns, self._body, self._ghost, self._shared.acting, self._shared.offset)
 
     def pulse(self, ended: str | None = None) -> Pulse:
-        """How the loop fares. Args: ended: why nothing moves any more."""
+        """State of the loop. Args: ended: why the run has stopped."""
         paced = self.report()
         at = 0.0 if self._last is None else self._last.measurement.time
         playing = paced.playing and ended is None

@@ -14,13 +14,13 @@ from pliant.experiments.runner import run_length
 from pliant.live.link.messages import Begin, Flow, Message, Note
 from pliant.live.link.pipe import Link
 from pliant.live.loop.pace import Pace
-from pliant.live.loop.requests import Wishes
+from pliant.live.loop.requests import Requests
 from pliant.live.loop.session import Session
 
 
 def main(connection: Connection) -> None:
-    """Runs what the page at the other end asks for, until it is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the page, which says goodbye
+    """Runs what the page requests, until the page is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the page, which closes the link
     link = Link(connection)
     worker = Worker(link)
     try:
@@ -44,7 +44,7 @@ class Worker:
         self._session: Session | None = None
 
     def serve(self) -> None:
-        """Returns when the page is gone."""
+        """Returns when the page is closed."""
         while not self._link.closed.is_set():
             begin, self._begin = self._begin, None
             if begin is not None:
@@ -82,14 +82,16 @@ class Worker:
         study, before = get_study(begin.study), self._session
         if before is None or before.study is not study or _wiring(before.built_for) != _wiring(begin.config):
             return Session(study, begin.config, self._link.send, self._runs)
-        wishes = Wishes() if begin.fresh else replace(before.desk.wishes, pull=None)
-        session = Session(study, before.built_for, self._link.send, self._runs, experiment=before.built, wishes=wishes)
+        requests = Requests() if begin.fresh else replace(before.shared.requests, pull=None)
+        session = Session(
+            study, before.built_for, self._link.send, self._runs, experiment=before.built, requests=requests
+        )
         if begin.config != before.built_for:
             session.retune(begin.config)
         return session
 
     def _after(self, begin: Begin, session: Session, failure: str | None) -> None:
-        """The run is over and nobody asked for another one yet."""
+        """Waits after the end of a run for the next request."""
         session.watch.refresh(now=True)
         if failure is not None:
             self._link.send(Note("failed", failure))

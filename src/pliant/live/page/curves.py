@@ -30,7 +30,7 @@ class Columns:
     """channel of the wrench that the controller asks for; empty if there is none"""
     energies: tuple[str, ...]
     live: bool
-    """whether pushes and computing times are known: a log has neither"""
+    """whether pushes and computation times are known; a log has neither"""
 
     @staticmethod
     def of(tick: Tick, joints: Sequence[str]) -> Columns:
@@ -81,7 +81,7 @@ _NAN3, _ZERO3 = np.full(3, np.nan), np.zeros(3)
 
 
 def contact_force(tick: Tick, frame: str) -> Array:
-    """(3,) N on the robot at a frame, as the robot knows it, or as it is where the robot does not."""
+    """(3,) N on the robot at a frame: estimated, or the true one where there is no estimate."""
     for signal in (tick.estimate, tick.truth):
         wrenches = {} if signal is None else signal.wrenches
         if frame in wrenches:
@@ -113,7 +113,7 @@ _SIGNALS = ("measurement", "estimate", "reference", "command", "truth")
 
 
 def _channel(log: Log, names: Sequence[str], time: Array, width: int) -> Array:
-    """(k, width) of the first channel that the log has, at the times of the torques; not-a-number where it has none."""
+    """(k, width) of the first channel that the log has, at the times of the torques; NaN where it has none."""
     for name in names:
         if name and name in log:
             values = log[name].reshape(len(log.time(name)), -1)[:, :width]

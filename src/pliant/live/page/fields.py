@@ -33,7 +33,7 @@ class Leaf:
     description: str
     minimum: float | None
     maximum: float | None
-    """range that makes sense; what is allowed is for the configuration to say"""
+    """usual range, for the slider; the configuration has the limits"""
     choices: tuple[str, ...] = ()
     optional: bool = False
     """whether the value may be none"""

@@ -11,7 +11,7 @@ from typing import Any
 import viser
 
 from pliant.errors import PliantError
-from pliant.live.link.steering_lock import Seat
+from pliant.live.link.steering_lock import SteeringLock
 from pliant.live.page.fields import FieldGroup, Leaf, Path
 
 Change = Callable[[Path, Any], None]
@@ -19,27 +19,23 @@ Change = Callable[[Path, Any], None]
 
 
 class Form:
-    """The controls of one group of values.
-
-    Args:
-        gui: the page.
-        seat: who may change something.
-        group: what there is to change.
-        change: called with every new value.
-        expanded: whether folders of the first level are open.
+    """The controls of one group of values. Args: gui: the page. steering: which browser may change values.
+    group: what there is to change.
+    change: called with every new value.
+    expanded: whether folders of the first level are open.
     """
 
     def __init__(
-        self, gui: viser.GuiApi, seat: Seat, group: FieldGroup, change: Change, *, expanded: bool = True
+        self, gui: viser.GuiApi, steering: SteeringLock, group: FieldGroup, change: Change, *, expanded: bool = True
     ) -> None:
-        self._gui, self._seat, self._change = gui, seat, change
+        self._gui, self._steering, self._change = gui, steering, change
         self._lock = threading.RLock()
         self._whole = gui.add_folder(None)
         with self._whole:
             self._fill(group, expanded, 0)
 
     def remove(self) -> None:
-        """Takes the controls off the page."""
+        """Removes the controls from the page."""
         self._whole.remove()
 
     def _fill(self, group: FieldGroup, expanded: bool, depth: int) -> None:
@@ -60,7 +56,7 @@ class Form:
             with self._lock:
                 if handle.value == good:
                     return
-                if not self._seat.allows(event.client_id):
+                if not self._steering.allows(event.client_id):
                     handle.value = good
                     tell(event, "You are watching", "Another browser steers. Take over on the tab Run.")
                     return
@@ -105,7 +101,7 @@ def _number(gui: viser.GuiApi, leaf: Leaf, value: float, look: dict[str, Any]) -
 
 
 def parsed(leaf: Leaf, value: Any) -> Any:
-    """What the configuration should get for what the control shows."""
+    """The value of the configuration for what the control shows."""
     if leaf.kind == "vector":
         return tuple(float(v) for v in value)
     if leaf.kind in ("text", "choice") and leaf.optional and str(value).strip().lower() in ("none", ""):
@@ -119,7 +115,7 @@ def parsed(leaf: Leaf, value: Any) -> Any:
 
 
 def refusal(reason: str) -> str:
-    """The reason as it stands under a control."""
+    """The text of a refusal, shown under a control."""
     safe = reason.replace("<", "&lt;").replace("*", "\\*").replace("_", "\\_")
     return f'<span style="color:#c22f2f">Refused: {safe}</span>'
 

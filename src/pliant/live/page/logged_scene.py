@@ -1,4 +1,4 @@
-"""A log as pictures of a scene."""
+"""The scene of a log at any time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CURVE_SAMPLES = 0.02  # s between two points of a curve
 
 
 class LoggedScene:
-    """What a log shows at any time.
+    """The scene of a log at any time.
 
     Args:
         log: with torques, and true joint positions or measured ones.
@@ -83,7 +83,7 @@ class LoggedScene:
         return self.rows[int(first) : max(int(last), int(first) + 1) : step]
 
     def _value(self, channel: str, at: float) -> Array | None:
-        """The sample of a channel that held at a time; None if it has none by then."""
+        """The latest sample of a channel at a time; None if there is none yet."""
         if channel not in self.log:
             return None
         index = int(np.searchsorted(self.log.time(channel), at + 1e-9)) - 1

@@ -1,4 +1,4 @@
-"""The page of a running loop: what comes from the loop is drawn, what people do is sent to it."""
+"""The page of a running loop: shows messages of the loop, and sends it the user's changes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from pliant.configuration import merged
 from pliant.experiments.base import CaseConfig
 from pliant.live.link.messages import (
     Flaws,
-    Looks,
     Message,
     Note,
     Parameters,
@@ -21,12 +20,13 @@ from pliant.live.link.messages import (
     Pulse,
     Ready,
     Samples,
+    SceneChanged,
     Surroundings,
 )  # fmt: skip
 from pliant.live.link.pipe import Link
-from pliant.live.link.steering_lock import Seat
+from pliant.live.link.steering_lock import SteeringLock
 from pliant.live.loop.tuning import online_fields, online_group, parameters_of
-from pliant.live.page.felt import FeltPanel
+from pliant.live.page.estimates_panel import EstimatesPanel
 from pliant.live.page.fields import Path as Place
 from pliant.live.page.fields import group_of, nested
 from pliant.live.page.form import Form
@@ -59,20 +59,20 @@ class Page:
         self._link = link
         self._viser = server.viser
         gui = self._viser.gui
-        self.seat = Seat(self._viser)
+        self.steering = SteeringLock(self._viser)
         self.view = SceneView(self._viser)
         self.plots = Plots(self._viser)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Run"):
-            self.run = RunControls(self._viser, self.seat, link.send, folder)
-            self.task = TaskControls(self._viser, self.seat, link.send)
-            self.felt = FeltPanel(self._viser)
+            self.run = RunControls(self._viser, self.steering, link.send, folder)
+            self.task = TaskControls(self._viser, self.steering, link.send)
+            self.estimates = EstimatesPanel(self._viser)
         self._tuning_tab = tabs.add_tab("Tune")
         with tabs.add_tab("Touch"):
             with gui.add_folder("Target"):
-                self.target = TargetControls(self._viser, self.seat, link.send)
+                self.target = TargetControls(self._viser, self.steering, link.send)
             with gui.add_folder("Push"):
-                self.pushes = PushControls(self._viser, self.seat, link.send)
+                self.pushes = PushControls(self._viser, self.steering, link.send)
             self._world_folder = gui.add_folder("Surfaces")
         self._robot_tab = tabs.add_tab("Robot")
         self._case_tab = tabs.add_tab("Case")
@@ -89,11 +89,11 @@ class Page:
 
     @property
     def config(self) -> CaseConfig | None:
-        """The configuration as it is turned now; None before the first run."""
+        """The present configuration; None before the first run."""
         return self._config
 
     def serve(self) -> None:
-        """Shows the loop until `stop` is called or the loop is gone."""
+        """Shows the loop until `stop` is called or the loop has ended."""
         pictures = 0
         while not self._stop.is_set() and not self._link.closed.is_set():
             self._link.wait(_SCENE_PERIOD)
@@ -106,11 +106,11 @@ class Page:
 
     @property
     def lost(self) -> bool:
-        """Whether the loop went without being asked to."""
+        """Whether the loop ended without a request."""
         return self._link.closed.is_set() and not self._stop.is_set()
 
     def mourn(self, text: str) -> None:
-        """Says in every browser that the loop is gone."""
+        """Shows in every browser that the loop has ended."""
         self._note(Note("failed", text))
 
     def stop(self) -> None:
@@ -128,7 +128,7 @@ class Page:
                 self.plots.extend(message.run, message.rows)
             case Pulse():
                 self.run.beat(message)
-            case Looks() if self._ready is not None:
+            case SceneChanged() if self._ready is not None:
                 self.view.stage(message.looks, self._ready.bodies, message.scene)
             case Note():
                 self._note(message)
@@ -155,7 +155,7 @@ class Page:
             self._framed = True
             self.view.frame_camera(picture.tool)
         self.view.draw(picture)
-        self.felt.show(picture)
+        self.estimates.show(picture)
         self.target.follow(picture, self._presses and self._ready is not None and not self._ready.config.dials)
         at = picture.contacts.get(self.pushes.frame)
         pushed = picture.pushes.get(self.pushes.frame)
@@ -181,12 +181,12 @@ class Page:
         self._scene = None if ready.scene is None else SceneForm(ready.scene)
         if self._scene is not None and ready.scene is not None and ready.scene.things:
             with self._world_folder:
-                self._forms.append(Form(self._viser.gui, self.seat, self._scene.group(), self._change_scene))
+                self._forms.append(Form(self._viser.gui, self.steering, self._scene.group(), self._change_scene))
         self._flaws = ready.flaws
         if ready.flaws is not None:
             flaws = group_of(ready.flaws, skip=frozenset({"joint_damping"}))
             with self._robot_tab:
-                self._forms.append(Form(self._viser.gui, self.seat, flaws, self._change_flaws, expanded=False))
+                self._forms.append(Form(self._viser.gui, self.steering, flaws, self._change_flaws, expanded=False))
         if ready.restarts:
             self._case_form(ready.config)
 
@@ -195,11 +195,11 @@ class Page:
         with self._tuning_tab:
             gui = self._viser.gui
             if parameters is not None and "control" in type(config).model_fields:
-                self._forms.append(Form(gui, self.seat, group_of(parameters), self._change_parameters))
+                self._forms.append(Form(gui, self.steering, group_of(parameters), self._change_parameters))
             elif online_fields(config):
-                self._forms.append(Form(gui, self.seat, online_group(config), self._change_online))
+                self._forms.append(Form(gui, self.steering, online_group(config), self._change_online))
             else:
-                self._forms.append(gui.add_markdown("This controller has no parameters to turn."))
+                self._forms.append(gui.add_markdown("This controller has no parameters that can be changed."))
 
     def _case_form(self, config: CaseConfig) -> None:
         self._wanted = config
@@ -210,12 +210,12 @@ class Page:
             )
             self._forms.append(button)
             self._forms.append(
-                Form(gui, self.seat, group_of(config, skip=_NOT_A_FORM), self._change_case, expanded=False)
+                Form(gui, self.steering, group_of(config, skip=_NOT_A_FORM), self._change_case, expanded=False)
             )
         button.on_click(self._start_wanted)
 
     def _start_wanted(self, event: viser.GuiEvent[Any]) -> None:
-        if self._wanted is not None and self._ready is not None and self.seat.allows(event.client_id):
+        if self._wanted is not None and self._ready is not None and self.steering.allows(event.client_id):
             control = getattr(self._config, "control", None)
             wanted = self._wanted if control is None else merged(self._wanted, {"control": control})
             self.run.start(self._ready.study, wanted, fresh=False)
@@ -230,7 +230,7 @@ class Page:
             self._retune(merged(self._config, nested(place, value)))
 
     def _retune(self, config: CaseConfig) -> None:
-        parameters_of(config)  # raises what the whole set of parameters forbids
+        parameters_of(config)  # raises an error if the parameters do not fit together
         self._config = config
         self.run.changed(config)
         self._link.send(Parameters(self._config))

@@ -1,4 +1,4 @@
-"""What the page draws of one instant, from a tick of a loop."""
+"""The scene at one instant, from a tick of a loop."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def picture(
         tick: what happened.
         columns: says which frame and which channels matter.
         body: of the robot and the things.
-        ghost: another one, of the reference's posture.
+        ghost: a second one, for the reference posture.
         pushes: that act.
-        offset: (3,) m, what the page added to the target.
+        offset: (3,) m of the target, from the page.
     """
     truth, reference = tick.truth, tick.reference
     q, objects = (tick.measurement.q, {}) if truth is None else (truth.q, truth.objects)
@@ -69,7 +69,7 @@ def _forces(tick: Tick, body: Poser) -> Mapping[str, tuple[Array, Array]]:
 
 
 def _asked(tick: Tick, columns: Columns) -> Array:
-    """(3,) N on the robot's side of the contact: the reference's wrench if it has one, else that of the controller."""
+    """(3,) N, desired reaction on the robot: from the reference if it has a wrench, else from the controller."""
     if tick.reference.tasks and np.any(tick.reference.tasks[0].wrench[:3]):
         return tick.reference.tasks[0].wrench[:3]
     if columns.command_wrench:

@@ -1,4 +1,4 @@
-"""The curves on the page: the last seconds of forces, errors, energies, torques and computing times."""
+"""The curves on the page: the last seconds of forces, errors, energies, torques and computation times."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Plots:
                 self._plots.append(self._add(title, ("control",)))
 
     def extend(self, run: int, rows: Array) -> None:
-        """Adds samples; those of a new run start anew."""
+        """Adds samples; a new run clears the old ones."""
         if rows.shape[1] != len(self._names):
             return
         if run != self._run or (len(self._rows) and rows[0, 0] < self._rows[-1, 0]):
@@ -108,7 +108,7 @@ class Plots:
             plot.handle.data = (time, *(np.nan_to_num(np.round(self._curve(recent, name), 4)) for name in plot.columns))
 
     def latest(self, name: str) -> float:
-        """The last value of a column, or of the magnitude of a vector; not-a-number before there is one."""
+        """The last value of a column, or of the magnitude of a vector; NaN before there is one."""
         return float(self._curve(self._rows[-1:], name, "magnitude")[0]) if len(self._rows) else float("nan")
 
     def _curve(self, rows: Array, name: str, axis: str | None = None) -> Array:
@@ -151,7 +151,7 @@ def _axis(label: str, size: int) -> Any:
         "size": size if not label else 24,
     }
     if not label:
-        axis["space"] = 18.0  # px between ticks: the plots are low
+        axis["space"] = 18.0  # px between ticks, because the plots are low
     if label:
         axis |= {"label": label, "labelSize": 16.0, "labelFont": "11px system-ui, sans-serif", "labelGap": 0.0}
     return axis

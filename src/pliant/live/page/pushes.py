@@ -11,7 +11,7 @@ import numpy as np
 import viser
 
 from pliant.live.link.messages import Message, Picture, Pull, PushNow
-from pliant.live.link.steering_lock import Seat
+from pliant.live.link.steering_lock import SteeringLock
 from pliant.live.page.form import tell
 from pliant.spatial import Array
 
@@ -20,7 +20,7 @@ _DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 }  # fmt: skip
 _NO_FRAMES: tuple[str, ...] = ("–",)
 _NEWTONS_PER_METRE = 250.0  # of a dragged arrow
-_RENEWED = 0.1  # s between two renewals of a pull
+_RENEWED = 0.1  # s between two renewals of a dragged force
 
 
 class PushControls:
@@ -28,18 +28,20 @@ class PushControls:
 
     Args:
         server: the page.
-        seat: who may push.
+        steering: which browser may push.
         send: takes a message for the loop.
     """
 
-    def __init__(self, server: viser.ViserServer, seat: Seat, send: Callable[[Message], None]) -> None:
-        self._seat, self._send = seat, send
+    def __init__(self, server: viser.ViserServer, steering: SteeringLock, send: Callable[[Message], None]) -> None:
+        self._steering, self._send = steering, send
         gui = server.gui
         self._frame = gui.add_dropdown("frame", _NO_FRAMES, hint="Frame of the robot that is pushed.")
-        self._force = gui.add_slider("force [N]", 1.0, 200.0, 1.0, 30.0, hint="How hard the button pushes.")
-        self._direction = gui.add_dropdown("direction", tuple(_DIRECTIONS), hint="Axis of the world.")
-        self._duration = gui.add_slider("duration [s]", 0.05, 2.0, 0.05, 0.3, hint="How long the button pushes.")
-        button = gui.add_button("Push", icon=viser.Icon.HAND_FINGER, hint="Pushes the frame once.")
+        self._force = gui.add_slider("force [N]", 1.0, 200.0, 1.0, 30.0, hint="Force of the push.")
+        self._direction = gui.add_dropdown(
+            "direction", tuple(_DIRECTIONS), hint="Direction of the push, an axis of the world."
+        )
+        self._duration = gui.add_slider("duration [s]", 0.05, 2.0, 0.05, 0.3, hint="Duration of the push.")
+        button = gui.add_button("Push", icon=viser.Icon.HAND_FINGER, hint="Applies the push once.")
         self._by_hand = gui.add_checkbox(
             "drag an arrow", False, hint=f"Shows a handle at the frame: drag it, {_NEWTONS_PER_METRE:g} N per metre."
         )
@@ -63,27 +65,27 @@ class PushControls:
         return self._frame.value
 
     def follow(self, picture: Picture, at: Array | None) -> None:
-        """Keeps the arrow at its frame, and a pull alive while somebody drags. Args: at: (3,) m of the frame."""
+        """Keeps the arrow at its frame, and renews the force while a user drags it. Args: at: (3,) m of the frame."""
         with self._lock:
             self._at = picture.tool if at is None else at
             if self._held is None:
                 self._handle.position = self._at
                 return
-            if time.monotonic() - self._renewed > _RENEWED and self._seat.taken:
+            if time.monotonic() - self._renewed > _RENEWED and self._steering.taken:
                 self._pull()
 
     def _show(self) -> None:
         self._handle.visible = self._by_hand.value
 
     def _push(self, event: viser.GuiEvent[Any]) -> None:
-        if not self._seat.allows(event.client_id):
+        if not self._steering.allows(event.client_id):
             tell(event, "You are watching", "Another browser steers. Take over on the tab Run.")
             return
         x, y, z = (self._force.value * part for part in _DIRECTIONS[self._direction.value])
         self._send(PushNow(self.frame, (x, y, z), self._duration.value))
 
     def _drag(self, event: viser.TransformControlsEvent) -> None:
-        if not self._seat.allows(event.client_id):
+        if not self._steering.allows(event.client_id):
             return
         with self._lock:
             self._held = None if event.phase == "end" else np.array(self._handle.position)

@@ -1,4 +1,4 @@
-"""What a page finds out about a run before it draws it."""
+"""What the page needs to know of a run before it draws it."""
 
 from __future__ import annotations
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import viser
 
-from pliant.live.link.steering_lock import Seat
-from pliant.live.page.felt import FeltPanel
+from pliant.live.link.steering_lock import SteeringLock
+from pliant.live.page.estimates_panel import EstimatesPanel
 from pliant.live.page.logged_scene import LoggedScene
 from pliant.live.page.plots import Plots
 from pliant.live.page.scene_view import SceneView
@@ -36,14 +36,14 @@ class ReplayPage:
     def __init__(self, server: PageServer, shown: LoggedScene) -> None:
         self._shown = shown
         self._viser = server.viser
-        self.seat = Seat(self._viser)
+        self.steering = SteeringLock(self._viser)
         self.view, self.plots = SceneView(self._viser), Plots(self._viser)
         self._start, self._end = float(shown.time[0]), float(shown.time[-1])
         self._playing = True
         self._stop = threading.Event()
         gui = self._viser.gui
         self.header = _header(shown.log)
-        """what the page says about the log"""
+        """text about the log"""
         gui.add_markdown(self.header)
         span = max(self._end - self._start, 1e-3)
         self._slider = gui.add_slider(
@@ -52,7 +52,7 @@ class ReplayPage:
         self._play = gui.add_button("Pause", icon=viser.Icon.PLAYER_PAUSE)
         self._speed = gui.add_dropdown("speed", tuple(_SPEEDS), initial_value="1×")
         self._status = gui.add_markdown("")
-        self.felt = FeltPanel(self._viser)
+        self.estimates = EstimatesPanel(self._viser)
         self._play.on_click(self._toggle)
         self._slider.on_update(self._seek)
         self._now = self._start
@@ -63,7 +63,7 @@ class ReplayPage:
 
     @property
     def time(self) -> float:
-        """s, what is shown."""
+        """s of the log, now shown."""
         return self._now
 
     def serve(self) -> None:
@@ -80,7 +80,7 @@ class ReplayPage:
             before = now
             picture = self._shown.picture(self._now)
             self.view.draw(picture)
-            self.felt.show(picture)
+            self.estimates.show(picture)
             if count % 3 == 0:
                 self.plots.show(self._shown.curves(self._now, 10.0))
                 self._status.content = f"**t = {picture.time:.3f} s**"
@@ -92,12 +92,12 @@ class ReplayPage:
         self._stop.set()
 
     def _toggle(self, event: viser.GuiEvent[Any]) -> None:
-        if self.seat.allows(event.client_id):
+        if self.steering.allows(event.client_id):
             self._playing = not self._playing
             self._play.label = "Pause" if self._playing else "Play"
 
     def _seek(self, event: viser.GuiEvent[Any]) -> None:
-        if event.client_id is None or not self.seat.allows(event.client_id):
+        if event.client_id is None or not self.steering.allows(event.client_id):
             return
         self._playing, self._play.label = False, "Play"
         self._now = float(self._slider.value)
@@ -109,7 +109,7 @@ def _header(log: Log) -> str:
     if log.failure:
         lines.append(f'<span style="color:#c22f2f">ended early: {log.failure}</span>')
     if log.truncated:
-        lines.append('<span style="color:#c22f2f">the file is cut off; this is what it still holds</span>')
+        lines.append('<span style="color:#c22f2f">the file is truncated; what could be read is shown</span>')
     return "<br/>".join(lines)
 
 

@@ -1,4 +1,4 @@
-"""Time, case and log: play, pause, step, reset; which case and controller; record; who steers."""
+"""The first tab: play, pause, step, reset; case and controller; recording; which browser steers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pliant.errors import PliantError
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.registry import get_study, study_names
 from pliant.live.link.messages import Begin, Flow, Message, Pulse, Ready, Record, StepOnce
-from pliant.live.link.steering_lock import Seat
+from pliant.live.link.steering_lock import SteeringLock
 from pliant.live.page.form import tell
 from pliant.wiring.registry import find_controller
 
@@ -30,44 +30,48 @@ class RunControls:
 
     Args:
         server: the page.
-        seat: who steers.
+        steering: which browser steers.
         send: takes a message for the loop.
         folder: where logs go.
     """
 
-    def __init__(self, server: viser.ViserServer, seat: Seat, send: Callable[[Message], None], folder: Path) -> None:
-        self._seat, self._send, self._folder = seat, send, folder
+    def __init__(
+        self, server: viser.ViserServer, steering: SteeringLock, send: Callable[[Message], None], folder: Path
+    ) -> None:
+        self._steering, self._send, self._folder = steering, send, folder
         self._flow = Flow()
         self._study, self._config = "", None
         self.recording: Path | None = None
-        """log that is being written"""
+        """log to which the recorder writes"""
         self.ticks = 0
         self._told: tuple[Path | None, bool, str | None] | None = None
         self._tell_at = 0.0
         """periods since the start"""
         gui = server.gui
         self._status = gui.add_markdown("*starting …*")
-        self._play = gui.add_button(
-            "Pause", icon=viser.Icon.PLAYER_PAUSE, hint="Stops simulated time, or lets it go on."
+        self._play = gui.add_button("Pause", icon=viser.Icon.PLAYER_PAUSE, hint="Pauses or continues simulated time.")
+        self._step = gui.add_button(
+            "Step one period", icon=viser.Icon.PLAYER_TRACK_NEXT, hint="Runs one control period, while paused."
         )
-        self._step = gui.add_button("Step one period", icon=viser.Icon.PLAYER_TRACK_NEXT, hint="While paused.")
         self._reset = gui.add_button(
-            "Reset", icon=viser.Icon.ROTATE, hint="Starts this case again with what is set now."
+            "Reset", icon=viser.Icon.ROTATE, hint="Starts this case again with the present settings."
         )
         self._speed = gui.add_dropdown(
-            "speed", tuple(_SPEEDS), initial_value="1×", hint="Simulated time per wall time."
+            "speed", tuple(_SPEEDS), initial_value="1×", hint="Simulated time divided by wall time."
         )
-        self._repeat = gui.add_checkbox("repeat", True, hint="Starts again where the run ends.")
+        self._repeat = gui.add_checkbox("repeat", True, hint="Starts again when the run ends.")
         self._record = gui.add_button("Record", icon=viser.Icon.PLAYER_RECORD, color="red", hint="Writes an MCAP log.")
         self._choice = gui.add_folder("Case")
         with self._choice:
             names = tuple(study_names())
-            self._studies = gui.add_dropdown("study", names, hint="Family of cases.")
-            self._cases = gui.add_dropdown("case", _NONE_YET, hint="Starts at once.")
+            self._studies = gui.add_dropdown("study", names, hint="Study, a family of cases.")
+            self._cases = gui.add_dropdown("case", _NONE_YET, hint="Starts this case at once.")
             self._controllers = gui.add_dropdown("controller", _NONE_YET, hint="Starts the case again at once.")
         self._reason = gui.add_markdown("", visible=False)
         self._steer = gui.add_button(
-            "Steer from this browser", icon=viser.Icon.STEERING_WHEEL, hint="Takes over; the others watch."
+            "Steer from this browser",
+            icon=viser.Icon.STEERING_WHEEL,
+            hint="Takes over the controls; other browsers can only watch.",
         )
         self._play.on_click(self._guarded(self._toggle))
         self._step.on_click(self._guarded(lambda: self._send(StepOnce())))
@@ -78,7 +82,7 @@ class RunControls:
         self._studies.on_update(self._choose_study)
         self._cases.on_update(self._choose_case)
         self._controllers.on_update(self._choose_controller)
-        self._steer.on_click(lambda event: seat.take(event.client_id))
+        self._steer.on_click(lambda event: steering.take(event.client_id))
 
     # ------------------------------------------------------------------ from the loop
 
@@ -92,22 +96,22 @@ class RunControls:
         self._reason.content = "\n\n".join(f'<span style="color:#b8860b">{text}</span>' for text in ready.warnings[:3])
 
     def changed(self, config: CaseConfig) -> None:
-        """The configuration as it is now."""
+        """The present configuration."""
         self._config = config
 
     def beat(self, pulse: Pulse) -> None:
-        """How the loop fares."""
+        """Shows the state of the loop."""
         changed = (pulse.recording, pulse.playing, pulse.ended) != self._told
         self.recording, self.ticks = pulse.recording, pulse.ticks
         if not changed and time.monotonic() < self._tell_at:
-            return  # text is dear to browsers
+            return  # updating text is expensive for a browser
         self._told, self._tell_at = (pulse.recording, pulse.playing, pulse.ended), time.monotonic() + _TEXT_PERIOD
         self._record.label = "Stop recording" if pulse.recording else "Record"
         playing = pulse.playing and pulse.ended is None
         self._play.label = "Pause" if playing else "Play"
         state = "playing" if playing else pulse.ended or "paused"
         log = f"<br/>recording **{pulse.recording.name}**" if pulse.recording else ""
-        watchers = self._seat.watchers()
+        watchers = self._steering.watchers()
         others = f" · {watchers} watching" if watchers else ""
         self._status.content = (
             f"**t = {pulse.time:.2f} s** · {state}<br/>"
@@ -121,7 +125,7 @@ class RunControls:
         self._reason.content = f'<span style="color:#c22f2f">{reason}</span>'
         self._status.content = "**stopped**"
 
-    # ------------------------------------------------------------------ from people
+    # ------------------------------------------------------------------ from the user
 
     def start(self, study: str, config: CaseConfig, *, fresh: bool = True) -> None:
         """Starts a run."""
@@ -144,7 +148,7 @@ class RunControls:
         flow = replace(self._flow, speed=_SPEEDS[self._speed.value], repeat=self._repeat.value)
         if flow == self._flow:
             return
-        if not self._seat.allows(event.client_id):
+        if not self._steering.allows(event.client_id):
             self._speed.value = next(name for name, speed in _SPEEDS.items() if speed == self._flow.speed)
             self._repeat.value = self._flow.repeat
             tell(event, *WATCHING)
@@ -188,8 +192,8 @@ class RunControls:
 
     def _mine(self, event: viser.GuiEvent[Any]) -> bool:
         if event.client_id is None:
-            return False  # the page itself filled in what runs
-        if self._seat.allows(event.client_id):
+            return False  # the page itself filled in the present values
+        if self._steering.allows(event.client_id):
             return True
         self._fill()
         tell(event, *WATCHING)
@@ -200,7 +204,7 @@ class RunControls:
             return
         study = get_study(self._study)
         for control, names, chosen in (
-            (self._studies, tuple(study_names()), study.name),  # beside them, the task file that runs
+            (self._studies, tuple(study_names()), study.name),  # and the task file that runs
             (self._cases, tuple(study.cases), self._config.case),
             (self._controllers, tuple(study.controllers), self._config.controller),
         ):
@@ -211,7 +215,7 @@ class RunControls:
 
     def _guarded(self, action: Callable[[], None]) -> Callable[[viser.GuiEvent[Any]], None]:
         def act(event: viser.GuiEvent[Any]) -> None:
-            if self._seat.allows(event.client_id):
+            if self._steering.allows(event.client_id):
                 action()
             else:
                 tell(event, *WATCHING)

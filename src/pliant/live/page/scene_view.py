@@ -22,14 +22,14 @@ _METRES_PER_NEWTON = 4e-3
 _LONGEST = 0.6  # m of an arrow
 _SHORTEST = 0.01  # m; below it nothing is drawn
 _TRACE = 120  # points, 4 s at 30 Hz
-_TRACES_EVERY = 3  # pictures; lines are dear to software renderers
+_TRACES_EVERY = 3  # pictures; lines are expensive for software renderers
 _CONE_HEIGHT = 0.10  # m
 _FORCES_SHOWN = 6  # of a prediction
 _NOWHERE = np.zeros((1, 2, 3))
 
 
 class SceneView:
-    """Draws pictures. Every change of it goes to all browsers, and the latest one counts.
+    """Draws the scene. Each change is sent to all browsers, and the latest one counts.
 
     Args:
         server: the page.
@@ -49,7 +49,7 @@ class SceneView:
         self._cone_friction = -1.0
         self._scene.set_up_direction("+z")
         self._scene.world_axes.visible = False
-        self._scene.configure_default_lights(cast_shadow=False)  # three more pictures a frame, which show no force
+        self._scene.configure_default_lights(cast_shadow=False)  # a shadow would triple the rendering
         self._scene.add_grid("/grid", 4.0, 4.0, cell_size=0.1, section_size=0.5, **_GRID)
         self._arrows = {
             name: self._scene.add_arrows(f"/{name}", _NOWHERE, colour, **_ARROW, visible=False)
@@ -71,7 +71,7 @@ class SceneView:
         self._target = self._scene.add_icosphere("/target_point", 0.012, color=_REFERENCE, opacity=0.8, visible=False)
 
     def frame_camera(self, tool: Array) -> None:
-        """Looks at robot and tool from the side where no wall stands. Args: tool: (3,) m."""
+        """Places the camera on the side of the robot where there is no wall. Args: tool: (3,) m."""
         reach = np.array([tool[0], tool[1], 0.0])
         length = float(np.linalg.norm(reach))
         reach = reach / length if length > 0.05 else np.array([1.0, 0.0, 0.0])
@@ -87,7 +87,7 @@ class SceneView:
             client.camera.position, client.camera.look_at = eye, middle
 
     def stage(self, looks: Sequence[Look], bodies: int, scene: Scene | None) -> None:
-        """Puts up robot and things; what stood there before is gone."""
+        """Shows the robot and the things; removes what was shown before."""
         with self._server.atomic():
             for handle in (*self._bodies, *self._ghosts):
                 handle.remove()
@@ -101,7 +101,7 @@ class SceneView:
         self.forget()
 
     def forget(self) -> None:
-        """Starts the traces anew."""
+        """Clears the traces."""
         self._tool_trace.clear()
         self._target_trace.clear()
 
@@ -132,7 +132,7 @@ class SceneView:
         self._point("predicted_force", shown)
 
     def _point(self, name: str, forces: list[tuple[Array, Array]], into: bool = False) -> None:
-        """Arrows that start at points, or that end there (`into`)."""
+        """Arrows that start at points, or end there (`into`)."""
         segments: list[Array] = []
         for at, force in forces:
             length = _METRES_PER_NEWTON * float(np.linalg.norm(force))

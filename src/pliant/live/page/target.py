@@ -1,4 +1,4 @@
-"""Moving the target: a handle in the scene that follows the reference until somebody drags it."""
+"""Moving the target: a handle in the scene that follows the reference until a user drags it."""
 
 from __future__ import annotations
 
@@ -10,22 +10,18 @@ import numpy as np
 import viser
 
 from pliant.live.link.messages import Aim, Message, Picture
-from pliant.live.link.steering_lock import Seat
+from pliant.live.link.steering_lock import SteeringLock
 from pliant.live.page.form import tell
 from pliant.spatial import Array
 
 
 class TargetControls:
-    """The handle, and how hard to press.
-
-    Args:
-        server: the page.
-        seat: who may drag.
-        send: takes a message for the loop.
+    """The handle, and the factor on the force. Args: server: the page. steering: which browser may drag.
+    send: takes a message for the loop.
     """
 
-    def __init__(self, server: viser.ViserServer, seat: Seat, send: Callable[[Message], None]) -> None:
-        self._seat, self._send = seat, send
+    def __init__(self, server: viser.ViserServer, steering: SteeringLock, send: Callable[[Message], None]) -> None:
+        self._steering, self._send = steering, send
         self._aim = Aim()
         self._nominal: Array = np.zeros(3)
         self._dragging = False
@@ -35,12 +31,12 @@ class TargetControls:
             "offset [m]",
             (0.0, 0.0, 0.0),
             step=0.005,
-            hint="From the study's own target, in the world's axes; or drag the handle.",
+            hint="Offset from the task's own target, world axes; or drag the handle.",
         )
         self._force = gui.add_slider(
-            "F_d factor [%]", 0.0, 200.0, 5.0, 100.0, hint="Factor on the force that the study asks for.", visible=False
+            "F_d factor [%]", 0.0, 200.0, 5.0, 100.0, hint="Factor on the desired force of the task.", visible=False
         )
-        home = gui.add_button("Back to the study's target", icon=viser.Icon.HOME)
+        home = gui.add_button("Back to the task's target", icon=viser.Icon.HOME)
         self._handle = server.scene.add_transform_controls("/target", 0.18, disable_rotations=True, visible=False)
         self._offset.on_update(self._typed)
         self._force.on_update(self._typed)
@@ -49,17 +45,17 @@ class TargetControls:
 
     @property
     def handle(self) -> viser.TransformControlsHandle:
-        """What people drag."""
+        """The handle that users drag."""
         return self._handle
 
     def reset(self) -> None:
-        """Where the study wants it."""
+        """The task's own target."""
         with self._lock:
             self._aim = Aim()
             self._offset.value, self._force.value = (0.0, 0.0, 0.0), 100.0
 
     def follow(self, picture: Picture, presses: bool) -> None:
-        """Moves the handle along with the reference. Args: presses: whether the study asks for a force."""
+        """Moves the handle along with the reference. Args: presses: whether the task has a desired force."""
         with self._lock:
             self._handle.visible = picture.nominal is not None
             if self._force.visible != presses:
@@ -71,7 +67,7 @@ class TargetControls:
                 self._handle.position = self._nominal + np.array(self._aim.offset)
 
     def _drag(self, event: viser.TransformControlsEvent) -> None:
-        if not self._seat.allows(event.client_id):
+        if not self._steering.allows(event.client_id):
             return
         with self._lock:
             self._dragging = event.phase != "end"
@@ -86,7 +82,7 @@ class TargetControls:
             aim = Aim((float(x), float(y), float(z)), self._force.value / 100.0)
             if aim == self._aim:
                 return
-            if not self._seat.allows(event.client_id):
+            if not self._steering.allows(event.client_id):
                 self._offset.value, self._force.value = self._aim.offset, 100.0 * self._aim.force_scale
                 tell(event, "You are watching", "Another browser steers. Take over on the tab Run.")
                 return
@@ -94,7 +90,7 @@ class TargetControls:
             self._send(aim)
 
     def _home(self, event: viser.GuiEvent[Any]) -> None:
-        if not self._seat.allows(event.client_id):
+        if not self._steering.allows(event.client_id):
             return
         self.reset()
         self._send(Aim())

@@ -10,37 +10,38 @@ from typing import Any
 import viser
 
 from pliant.experiments.base_config import Dial
-from pliant.live.link.messages import Message, Turned
-from pliant.live.link.steering_lock import Seat
+from pliant.live.link.messages import Message, TaskScaling
+from pliant.live.link.steering_lock import SteeringLock
 from pliant.live.page.form import tell
 from pliant.live.page.run_controls import WATCHING
 
 _SLOWEST = 0.1
-"""share of the task's speed: a task that stands still would never end"""
+"""share of the task's speed; at zero the task would not end"""
 _STEPS = 200  # of a slider, at least
 
 
 class TaskControls:
-    """A slider for each dial, in the task's own unit, up to its limits. It turns the running task by a factor.
+    """A slider for force and for speed, in the task's own units, up to its limits. It scales the running task by a
+    factor.
 
     Args:
         server: the page.
-        seat: who may turn them.
+        steering: which browser may move them.
         send: takes a message for the loop.
     """
 
-    def __init__(self, server: viser.ViserServer, seat: Seat, send: Callable[[Message], None]) -> None:
-        self._gui, self._seat, self._send = server.gui, seat, send
+    def __init__(self, server: viser.ViserServer, steering: SteeringLock, send: Callable[[Message], None]) -> None:
+        self._gui, self._steering, self._send = server.gui, steering, send
         self._lock = threading.RLock()  # assigning to a control calls back at once
         self._folder = server.gui.add_folder("Task", visible=False)
         self._dials: tuple[Dial, ...] = ()
         self._sliders: dict[str, viser.GuiSliderHandle[float]] = {}
-        self._turned = Turned()
+        self._scaling = TaskScaling()
 
     def offer(self, dials: tuple[Dial, ...]) -> None:
-        """Sliders for what a task lets people turn, where the task wants them."""
+        """Sliders for what can be changed in a running task, at the task's own values."""
         with self._lock:
-            self._turned = Turned()
+            self._scaling = TaskScaling()
             for slider in self._sliders.values():
                 slider.remove()
             self._dials, self._sliders = dials, {}
@@ -53,9 +54,9 @@ class TaskControls:
         low = _SLOWEST * dial.value if dial.name == "speed" else 0.0
         step = 10.0 ** math.floor(math.log10(dial.high / _STEPS))
         what = (
-            "Largest force of the task; the others keep their ratio to it."
+            "Largest force of the task; other forces keep their ratio to it."
             if dial.name == "force"
-            else ("Of the path on the surface.")
+            else ("Speed along the path on the surface.")
         )
         slider = self._gui.add_slider(
             f"{dial.name} [{dial.unit}]",
@@ -70,13 +71,13 @@ class TaskControls:
 
     def _turn(self, event: viser.GuiEvent[Any]) -> None:
         with self._lock:
-            wanted = Turned(**{dial.name: self._sliders[dial.name].value / dial.value for dial in self._dials})
-            if wanted == self._turned:
+            wanted = TaskScaling(**{dial.name: self._sliders[dial.name].value / dial.value for dial in self._dials})
+            if wanted == self._scaling:
                 return
-            if not self._seat.allows(event.client_id):
+            if not self._steering.allows(event.client_id):
                 for dial in self._dials:
-                    self._sliders[dial.name].value = getattr(self._turned, dial.name) * dial.value
+                    self._sliders[dial.name].value = getattr(self._scaling, dial.name) * dial.value
                 tell(event, *WATCHING)
                 return
-            self._turned = wanted
+            self._scaling = wanted
             self._send(wanted)

@@ -16,7 +16,7 @@ from pliant.spatial import frame_with_z_along, rpy
 
 
 class SurfaceForm(BaseModel):
-    """How a thing feels to the touch."""
+    """Contact properties of a thing."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -26,16 +26,16 @@ class SurfaceForm(BaseModel):
 
 
 class PlaneForm(SurfaceForm):
-    """The same, and how it leans against how the study put it up."""
+    """Contact properties and tilt of a surface, relative to the study's scene."""
 
     tilt: float = quantity(
-        0.0, "rad", "turned about the first horizontal axis of the surface", shown=(-0.5, 0.5), ge=-1.5, le=1.5
+        0.0, "rad", "tilt about the first tangent axis of the surface", shown=(-0.5, 0.5), ge=-1.5, le=1.5
     )
-    turn: float = quantity(0.0, "rad", "turned about the second one", shown=(-0.5, 0.5), ge=-1.5, le=1.5)
+    turn: float = quantity(0.0, "rad", "tilt about the second tangent axis", shown=(-0.5, 0.5), ge=-1.5, le=1.5)
 
 
 class SceneForm:
-    """The values of a scene, and the scene that changed values give.
+    """The values of a scene, and the scene that follows from changed values.
 
     Args:
         built: the scene as the study built it.

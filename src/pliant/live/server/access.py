@@ -1,6 +1,6 @@
-"""Who may see the page: whoever has the link with its token. Asked at the page's only port, before anything else.
+"""Access to the page: only with the token of its link. Checked at the page's only port, before anything else.
 
-The same question stands before every file and every websocket; nothing of the page answers without the token.
+The same check precedes every file and every websocket; without the token no request is served.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def new_token() -> str:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What is said in place of the page."""
+    """The response in place of the page."""
 
     status: HTTPStatus
     text: str
@@ -45,7 +45,7 @@ class Answer:
 
 
 @dataclass(frozen=True, slots=True)
-class Door:
+class AccessControl:
     """Decides about each request from its target and headers.
 
     Args:
@@ -63,14 +63,14 @@ class Door:
         return f"pliant-token-{self.port}"
 
     def answer(self, target: str, hosts: list[str], origins: list[str], cookies: list[str]) -> Answer | None:
-        """What a request gets in place of the page; None if it may pass.
+        """The response to a request that is refused; None if it is allowed.
 
         Args:
             target: path and query.
             hosts, origins, cookies: values of the headers Host, Origin and Cookie.
         """
         if len(hosts) != 1 or not self._knows(hosts[0]):
-            return _refusal("open the page by the address that pliant printed")
+            return _refusal("open the page at the address that pliant printed")
         if any(origin != f"http://{hosts[0]}" for origin in origins):
             return _refusal("this page answers its own scripts only")
         if any(self._is_token(value) for value in _cookies(cookies, self.cookie)):
@@ -89,7 +89,7 @@ class Door:
         return hmac.compare_digest(given.encode("utf-8", "replace"), self.token.encode())
 
     def _knows(self, host: str) -> bool:
-        """Whether a Host header names this machine; a foreign one is a trick to get past the origin."""
+        """Whether a Host header names this machine; a foreign one is an attempt to bypass the check of the origin."""
         try:
             name = urlsplit(f"//{host}").hostname or ""
         except ValueError:

@@ -19,10 +19,10 @@ from pliant.live.page.page import Page
 from pliant.live.server.web import PageServer
 
 _PATIENCE = 10.0  # s for the other process to finish its log
-_LAST_WORDS = 3.0  # s in which browsers learn that the loop is gone
+_LAST_WORDS = 3.0  # s in which browsers are told that the loop has ended
 _LOST = "the process of the loop has ended unexpectedly; start the command again"
 Announce = Callable[[PageServer], None]
-"""told the address once the page can be opened"""
+"""called with the address once the page can be opened"""
 
 
 def serve_live(study: str, config: CaseConfig, host: str, port: int, folder: Path, announce: Announce) -> None:
@@ -37,7 +37,7 @@ def serve_live(study: str, config: CaseConfig, host: str, port: int, folder: Pat
 
     Raises:
         ConfigError: the address cannot be listened at.
-        RunFailedError: the process of the loop ended unasked.
+        RunFailedError: the process of the loop ended unexpectedly.
     """
     with PageServer(host, port) as server, live_page(server, folder) as page:
         page.run.start(study, config)
@@ -68,7 +68,7 @@ def live_page(server: PageServer, folder: Path) -> Generator[Page]:
 
 
 @contextmanager
-def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, bool], None]) -> Generator[Link]:
+def page_process(host: str, port: int, folder: Path, announce: Callable[[str, bool], None]) -> Generator[Link]:
     """A page in a child process, for a loop that runs in this one.
 
     Args:
@@ -103,7 +103,7 @@ def page_beside(host: str, port: int, folder: Path, announce: Callable[[str, boo
 
 
 def _run_page(connection: Connection, host: str, port: int, folder: Path) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the loop, which says goodbye
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the loop, which closes the link
     try:
         server = PageServer(host, port)
     except PliantError as error:

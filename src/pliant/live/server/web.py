@@ -1,12 +1,12 @@
-"""The web server of the page: viser behind a door that asks for the token."""
+"""The web server of the page: viser behind a check of the token."""
 
 from __future__ import annotations
 
 from types import TracebackType
 from typing import Self
 
-from pliant.live.server.access import Door, is_loopback, listen, new_token
-from pliant.live.server.closed import closed_viser, silent
+from pliant.live.server.access import AccessControl, is_loopback, listen, new_token
+from pliant.live.server.protected import protected_viser, silent
 
 _BRAND = (11, 111, 184)
 
@@ -24,14 +24,14 @@ class PageServer:
     def __init__(self, host: str, port: int) -> None:
         listening = listen(host, port)
         self.port = int(listening.getsockname()[1])
-        door = Door(host, self.port, new_token())
+        access = AccessControl(host, self.port, new_token())
         try:
-            self.viser = closed_viser(door, listening)
+            self.viser = protected_viser(access, listening)
         except BaseException:
             listening.close()
             raise
         shown = f"[{host}]" if ":" in host else host
-        self.url = f"http://{shown}:{self.port}/?token={door.token}"
+        self.url = f"http://{shown}:{self.port}/?token={access.token}"
         """link that opens the page"""
         self.exposed = not is_loopback(host)
         """whether other machines can reach the page"""
@@ -41,7 +41,7 @@ class PageServer:
         gui.main_panel.set_width(356)
 
     def stop(self) -> None:
-        """Takes the page away."""
+        """Closes the page."""
         with silent():
             self.viser.stop()
 

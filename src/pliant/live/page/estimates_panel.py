@@ -1,4 +1,4 @@
-"""What the contacts are believed to feel like: a few lines on the page, where something is estimated."""
+"""Estimated contact properties as lines of text on the page."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import viser
 from pliant.environment import Environment, FeltSurface
 from pliant.live.link.messages import Picture
 
-_EVERY = 0.3  # s between two texts: a browser lays the page out anew for each
+_EVERY = 0.3  # s between two updates, because a browser lays out the page again after each
 
 
-class FeltPanel:
+class EstimatesPanel:
     """The lines; hidden where nothing is estimated. Args: server: the page."""
 
     def __init__(self, server: viser.ViserServer) -> None:
@@ -22,7 +22,7 @@ class FeltPanel:
         self._due = 0.0
 
     def show(self, picture: Picture) -> None:
-        """What is believed at the instant of a picture."""
+        """Shows the estimates at the instant of a picture."""
         now = time.monotonic()
         if now < self._due:
             return
@@ -36,16 +36,16 @@ class FeltPanel:
 
 
 def environment_line(frame: str, felt: Environment) -> str:
-    """Stiffness and damping of what a frame touches, with standard uncertainties."""
+    """Estimated stiffness and damping of the contact of a frame, with standard uncertainties."""
     stiffness = _number(felt.stiffness, felt.stiffness_std, "N/m")
     damping = _number(felt.damping, felt.damping_std, "N·s/m")
-    return f"believed at **{frame}**: stiffness {stiffness}, damping {damping}"
+    return f"estimated at **{frame}**: stiffness {stiffness}, damping {damping}"
 
 
 def surface_line(frame: str, felt: FeltSurface) -> str:
-    """By how much the surface that a frame touches stands otherwise than it was believed."""
+    """Estimated rotation of the surface that a frame touches, away from the believed one."""
     turn, std = math.degrees(float(np.linalg.norm(felt.turn))), math.degrees(felt.normal_std)
-    return f"believed at **{frame}**: surface turned by {_number(turn, std, '°')}"
+    return f"estimated at **{frame}**: surface tilted by {_number(turn, std, '°')}"
 
 
 def _number(value: float, std: float, unit: str) -> str:

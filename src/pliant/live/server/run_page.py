@@ -1,4 +1,4 @@
-"""A page beside a run of the command line: it may be watched and steered, and ends as it would without a page."""
+"""A page for one run of the command line. The run can be watched and steered, and ends as it would without a page."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from pliant.live.link.messages import Flow
 from pliant.live.link.pipe import Link
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.session import Session
-from pliant.live.server.launch import page_beside
+from pliant.live.server.launch import page_process
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
+class RunPage:
     """What `run_case` needs so that a page can follow its loop."""
 
     experiment: Experiment
@@ -27,7 +27,7 @@ class Beside:
 
 
 @contextmanager
-def beside(
+def page_for_run(
     study: Study[Any],
     config: CaseConfig,
     experiment: Experiment,
@@ -35,8 +35,8 @@ def beside(
     port: int,
     folder: Path,
     announce: Callable[[str, bool], None],
-) -> Generator[Beside]:
-    """A page for one run of this process; it goes when the run is over.
+) -> Generator[RunPage]:
+    """A page for one run of this process; it is closed when the run ends.
 
     Args:
         study, config, experiment: the run.
@@ -47,18 +47,18 @@ def beside(
     Raises:
         ConfigError: the address cannot be listened at, or the plant cannot be shown.
     """
-    with page_beside(host, port, folder, announce) as link:
+    with page_process(host, port, folder, announce) as link:
         session = Session(study, config, link.send, 1, experiment=experiment, restarts=False)
         pace = Pace(session.plant.period, lambda: _attend(session, pace, link), link.wait)
         session.observe(pace)
-        yield Beside(session.experiment, [session.watch], pace)
+        yield RunPage(session.experiment, [session.watch], pace)
         session.watch.refresh(now=True)
 
 
 def _attend(session: Session, pace: Pace, link: Link) -> None:
     session.announce()
     if link.closed.is_set():
-        pace.flow = Flow()  # nobody is left to let it go on
+        pace.flow = Flow()  # without a page nobody could continue a paused run
         return
     if not pace.flow.playing:
         session.watch.refresh()

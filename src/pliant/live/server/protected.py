@@ -1,4 +1,4 @@
-"""viser's web server with a door: its one socket is ours, and each request is asked for the token first."""
+"""viser's web server behind a check of the token: it listens on a socket of ours, and each request is checked first."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from pliant.live.server.access import Answer, Door
+from pliant.live.server.access import AccessControl, Answer
 
 _ONE_AT_A_TIME = threading.Lock()
 _PATIENCE = 10.0  # s for a request to arrive
 _Process = Callable[[ServerConnection, Request], Response | None]
 
 
-def closed_viser(door: Door, listening: socket.socket) -> viser.ViserServer:
-    """A server of viser that listens at a given socket alone, behind a door.
+def protected_viser(access: AccessControl, listening: socket.socket) -> viser.ViserServer:
+    """A viser server that listens on a given socket only, behind a check of each request.
 
     viser takes neither a socket nor a hook for requests, but hands both on to `websockets.asyncio.server.serve`; while
-    the server is made, that name stands for a function that puts them in.
+    the server is created, that name is replaced by a function that passes them on.
     """
     real = websocket_server.serve
     used = threading.Event()
@@ -37,7 +37,7 @@ def closed_viser(door: Door, listening: socket.socket) -> viser.ViserServer:
         return real(
             handler,
             sock=listening,
-            process_request=_asked(door, process_request),
+            process_request=_asked(access, process_request),
             open_timeout=_PATIENCE,
             logger=_quiet(),
             **settings,
@@ -46,24 +46,26 @@ def closed_viser(door: Door, listening: socket.socket) -> viser.ViserServer:
     with _ONE_AT_A_TIME, silent():
         cast("Any", websocket_server).serve = serve
         try:
-            server = viser.ViserServer("127.0.0.1", door.port, label="pliant", verbose=False)
+            server = viser.ViserServer("127.0.0.1", access.port, label="pliant", verbose=False)
         finally:
             cast("Any", websocket_server).serve = real
     if not used.is_set():
         server.stop()
-        raise RuntimeError("this version of viser starts its server in another way; its page would be open to all")
+        raise RuntimeError(
+            "this version of viser starts its server differently, and its page would be open to everybody"
+        )
     return server
 
 
 def silent() -> contextlib.AbstractContextManager[Any]:
-    """viser announces an address of its own, which is not the one to open."""
+    """Silences viser, which would print an address that is not the one to open."""
     return contextlib.redirect_stdout(io.StringIO())
 
 
-def _asked(door: Door, further: _Process) -> _Process:
+def _asked(access: AccessControl, further: _Process) -> _Process:
     def process(connection: ServerConnection, request: Request) -> Response | None:
         of = request.headers.get_all
-        answer = door.answer(request.path, of("Host"), of("Origin"), of("Cookie"))
+        answer = access.answer(request.path, of("Host"), of("Origin"), of("Cookie"))
         return further(connection, request) if answer is None else _response(answer)
 
     return process
@@ -78,7 +80,7 @@ def _response(answer: Answer) -> Response:
 
 
 def _quiet() -> logging.Logger:
-    """What strangers send is no news for the terminal."""
+    """A logger that prints nothing, so that bad requests do not fill the terminal."""
     logger = logging.getLogger("pliant.live.server")
     logger.setLevel(logging.CRITICAL + 1)
     return logger
