@@ -157,7 +157,7 @@ BAD_INPUT = [
     (["doctor", "iiwa14", "--locked", "A9=0"], "no joint 'A9' to lock"),
     (["doctor", "iiwa14", "--locked", "A7"], "JOINT=ANGLE"),
     (["doctor", "iiwa14", "--locked", "A7=nan"], "finite"),
-    (["doctor", "--locked", "A7=0"], "--locked is of a robot"),
+    (["doctor", "--locked", "A7=0"], "--locked needs a robot"),
     (["run", "--out", "broken.urdf/x"], "output folder"),
     (["run", "missing.toml"], "missing.toml does not exist"),
     (["run", "twice.toml"], "is not TOML"),

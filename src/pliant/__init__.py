@@ -3,9 +3,9 @@
     result = pliant.run("haptic", controller="haptic", duration=1.5)
     print(result.table())
 
-The names below are the interface; each is explained, with an example that runs, in docs/python.md. They are imported
-when they are asked for. Beside them, `pliant.controllers()` and `pliant.robots()` list what can be chosen by name, and
-`pliant.errors` holds every error. What else the package holds may change between two versions.
+The names below are the public interface; docs/python.md explains each with an example that runs. They are imported on
+first use. Beside them, `pliant.controllers()` and `pliant.robots()` list what can be chosen by name, and
+`pliant.errors` holds every error. Everything else in the package may change between two versions.
 """
 
 # pyright: reportUnsupportedDunderAll=false

@@ -1,4 +1,4 @@
-"""What is asked of each axis of a task: a motion, a force, or nothing (Mason 1981)."""
+"""The mode of each axis of a task: motion, force, or free (Mason 1981)."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ AXIS_NAMES = ("x", "y", "z", "about x", "about y", "about z")
 
 @dataclass(frozen=True, eq=False)
 class AxisModes:
-    """Modes of the six axes of a frame, with the bounds of what its force axes may do.
+    """Modes of the six axes of a frame, with the bounds of the motion along its force axes.
 
     On an axis of mode "force" the wrench of the reference is a request, 0 N too. One value stands for a whole phase:
     who compares two of them compares their identity.
 
     Raises:
-        ShapeError: there are not six modes, or the rotation is no (3, 3).
-        ConfigError: a bound that is not above zero.
+        ShapeError: there are not six modes, or the rotation is not (3, 3).
+        ConfigError: a bound that is not positive.
     """
 
     modes: tuple[Mode, ...]
@@ -33,9 +33,9 @@ class AxisModes:
     rotation: Array = field(default_factory=lambda: np.eye(3))
     """R_world_axes (3, 3)"""
     speed: float = math.inf
-    """m/s, largest of the motion along force axes"""
+    """m/s, largest speed along force axes"""
     deviation: float = math.inf
-    """m, largest way along force axes from where the phase began"""
+    """m, largest distance along force axes from where the phase began"""
 
     def __post_init__(self) -> None:
         if len(self.modes) != 6 or np.shape(self.rotation) != (3, 3):
@@ -49,7 +49,7 @@ class AxisModes:
 
     @property
     def turned(self) -> bool:
-        """Whether its axes are others than the world's."""
+        """Whether its axes differ from the world's."""
         return bool(self._turned)  # type: ignore[attr-defined]
 
     def having(self, mode: Mode) -> tuple[bool, ...]:
@@ -61,7 +61,7 @@ class AxisModes:
         return np.concatenate([self.rotation.T @ vector[:3], self.rotation.T @ vector[3:]])
 
     def pressing(self, wrench: Array) -> AxisModes:
-        """The same, with a force along every axis that a wrench (6,), N and N·m in world axes, has a part of."""
+        """The same, with mode "force" on each axis on which a wrench (6,), N and N·m in world axes, has a component."""
         told = self.into(wrench)
         pressed = np.abs(told) > 1e-9 * max(float(np.abs(told).max(initial=0.0)), 1e-9)
         modes = tuple("force" if presses else mode for presses, mode in zip(pressed.tolist(), self.modes, strict=True))
@@ -71,7 +71,7 @@ class AxisModes:
 
 
 def modes_of_wrench(wrench: Sequence[float], *, oriented: bool) -> tuple[Mode, ...]:
-    """A force along the axes that a wrench (6,) in their own axes has a part of, motion along the others.
+    """Mode "force" on the axes on which a wrench (6,), in the same axes, has a component, "motion" on the others.
 
     Args: oriented: whether the orientation is held; else the rotations without a moment are free.
     """

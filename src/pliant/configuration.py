@@ -16,12 +16,12 @@ from pliant.files import read_file
 from pliant.overlay import models_in, overlaid
 
 MOST = 1e12
-"""size of the largest number of a configuration, in whatever unit: beyond it sums and products stop making sense"""
+"""largest absolute value in a configuration, in any unit; beyond it sums and products overflow or lose their meaning"""
 
 
 class Config(BaseModel):
-    """Frozen values with a meaning: unknown keys are errors, defaults are checked too, every number is finite
-    and at most `MOST` in size.
+    """Base of all configurations: frozen; unknown keys are errors, defaults are checked too, numbers are finite and at
+    most `MOST` in size.
 
     A field with a unit is a `pliant.quantity.quantity`, any other one a `Field(default, description=...)`; help texts
     and sliders are made from them.
@@ -103,8 +103,9 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
 
 
 def _parts(key: str) -> list[str]:
-    """Of a dotted key: dots within double quotes, and the one of `file.py:Class`, do not part it."""
-    outside = r'(?=(?:[^"]*"[^"]*")*[^"]*$)' if '"' in key else ""  # of quotes: an even number of them follows
+    """Parts of a dotted key: dots within double quotes, and the dot of `file.py:Class`, do not separate."""
+    # outside of quotes: an even number of quotes follows
+    outside = r'(?=(?:[^"]*"[^"]*")*[^"]*$)' if '"' in key else ""
     return [part.strip().strip('"') for part in re.split(rf"\.(?!py:){outside}", key)]
 
 
@@ -120,7 +121,7 @@ def merged(config: C, changes: Mapping[str, Any]) -> C:
 
 
 def validated(kind: type[C], values: Mapping[str, Any]) -> C:
-    """Builds a configuration; the first thing wrong with it becomes one clear sentence."""
+    """Builds a configuration; the first error in it becomes one sentence."""
     try:
         return kind.model_validate(dict(values))
     except ValidationError as error:
@@ -158,7 +159,7 @@ def _is_deep(values: Any) -> bool:
 
 
 def _shown(value: Any) -> str:
-    """A value as messages show it: its beginning."""
+    """A value for a message, shortened if it is long."""
     try:
         text = repr(value)
     except ValueError:  # a number with more digits than Python writes
@@ -168,7 +169,7 @@ def _shown(value: Any) -> str:
 
 def _sentence(kind: type[BaseModel], error: ValidationError) -> str:
     found = error.errors()
-    # where one of several forms is allowed, each complains: a rule that is broken says most
+    # where one of several types is allowed, each gives an error: a broken rule is the most useful one
     first = next((one for one in found if one["type"] == "value_error"), found[0])
     where = ".".join(str(part) for part in first["loc"])
     got = first.get("input")

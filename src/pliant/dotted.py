@@ -9,7 +9,7 @@ from pliant.errors import ConfigError
 
 
 def nested(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Turns `{"a.b": 1.0}` into `{"a": {"b": 1.0}}`; tables of the same name are one.
+    """Turns `{"a.b": 1.0}` into `{"a": {"b": 1.0}}`; tables of the same name are merged.
 
     Raises:
         ConfigError: a key is given twice, or as a value and as a table.

@@ -1,7 +1,7 @@
 """How a package offers its controllers by name: a typed default configuration and a way to build one from it.
 
-Each package that has controllers (`controllers`, `mpc`, …) keeps a table of its own; whoever stands above them merges
-the tables. So no package needs to know another.
+Each package with controllers (`controllers`, `mpc`, …) keeps a table of its own; `wiring` merges the tables, so that no
+package depends on another.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ C = TypeVar("C", bound=ControllerConfig)
 
 @dataclass(frozen=True)
 class Believed:
-    """What a controller may know of a task and of its robot before it starts: nothing of how the world differs."""
+    """What a controller may know of a task and of its robot before it starts; it excludes how the real world
+    differs."""
 
     frames: tuple[str, ...]
     """frames with a reference, the most important first"""
@@ -99,21 +100,21 @@ class ControllerEntry(Generic[C]):
     summary: str
     """one line, for `pliant list controllers`"""
     default: C
-    """its configuration where the user says nothing; the type of it is the schema"""
+    """its default configuration, whose type is the schema"""
     build: Callable[[Robot, C, float], Controller[Any]]
     """robot, configuration, control period in s → controller"""
     advise: Callable[[Robot, C, float], tuple[str, ...]] = _no_advice
-    """robot, configuration, control period in s → what is unsafe about the parameters, in sentences"""
+    """robot, configuration, control period in s → warnings about unsafe parameters, as sentences"""
     family: str = "other"
     """controllers of one family share the type of their configuration"""
     guarantees: str = "–"
-    """what holds of it, in a few words, and where"""
+    """what holds for its commands, and under which conditions, in a few words"""
     regulates_force: bool = False
     """whether it, with its reference filter, drives the contact force to the desired one"""
     needs: Callable[[C], Needs] = _needs_nothing
-    """configuration → what it wants to be told"""
+    """configuration → signals that it needs"""
     suggest: Callable[[Robot, C, Believed], C] = _as_it_is
-    """robot, configuration to start from, what is believed of the task → a configuration that suits both"""
+    """robot, initial configuration, what is believed of the task → a configuration that suits robot and task"""
     fixed: Mapping[str, Any] = field(default_factory=lambda: _NOTHING)
     """values of the configuration that make this controller of its family what it is"""
     filter: Callable[[ReferenceSource[Any], Robot, C], ReferenceSource[Any]] = _unfiltered
@@ -121,10 +122,10 @@ class ControllerEntry(Generic[C]):
     filter_channels: Callable[[C, Sequence[str]], Mapping[str, str]] = _no_channels
     """configuration and pressing frames → channel of the filter → unit"""
     planner: str = ""
-    """planner of targets that jump which belongs to it; empty: the task's"""
+    """its own planner for targets that jump; empty: the task's planner"""
 
     def over(self, base: ControllerConfig) -> C:
-        """Another configuration of the family with what makes this controller what it is."""
+        """A configuration of the same family with the fixed values of this controller."""
         changed: C = merged(base, self.fixed)  # type: ignore[assignment]  # one family, one type
         return changed
 
@@ -132,13 +133,13 @@ class ControllerEntry(Generic[C]):
         """A configuration of this controller with a user's changes, nested.
 
         Raises:
-            ConfigError: an unknown key, a bad value, or one that would make another controller of it.
+            ConfigError: an unknown key, a bad value, or a change of a fixed value of this controller.
         """
         made = merged(config, changes)
         if merged(made, self.fixed) != made:
             fixed = ", ".join(f"{key} = {value!r}" for key, value in flat(self.fixed).items())
             raise ConfigError(
-                f"controller {self.name!r} is what it is by {fixed}: a change of that is another controller"
+                f"controller {self.name!r} is defined by {fixed}: with other values it is another controller"
                 " (`pliant list controllers`)"
             )
         return made

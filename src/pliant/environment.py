@@ -1,4 +1,4 @@
-"""What a contact feels like, as far as an estimator knows."""
+"""Estimated properties of a contact."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True, slots=True)
 class Environment:
-    """How the environment is believed to give way along a contact's normal. Each `…_std` is a standard uncertainty."""
+    """Estimated stiffness and damping of the environment along a contact's normal. Each `…_std` is a standard
+    uncertainty."""
 
     stiffness: float
     """K, N/m"""
@@ -18,12 +19,13 @@ class Environment:
     stiffness_std: float
     """N/m"""
     damping_std: float
-    """N·s/m; infinite where the motion does not tell"""
+    """N·s/m; infinite where the motion does not determine the damping"""
 
 
 @dataclass(frozen=True, slots=True)
 class FeltSurface:
-    """How a surface stands, as the path of the contact tells: the believed one, turned about a place and shifted."""
+    """Estimated pose of a surface, from the path of the contact: the believed surface, turned about a point and
+    shifted."""
 
     pivot: Array
     """(3,) m, where the contact frame first touched"""

@@ -39,7 +39,7 @@ class RunFailedError(PliantError):
 
 
 def told(error: BaseException) -> str:
-    """Type and text of somebody else's error, in one line of at most 300 letters, whatever its text is."""
+    """Type and text of somebody else's error, in one line of at most 300 characters."""
     try:
         text = " ".join(str(error).split())
     except Exception:

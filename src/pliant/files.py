@@ -1,4 +1,4 @@
-"""Files that a user names: whatever stands there is read to its end, or refused in a sentence."""
+"""Files that a user names: read completely, or refused with one sentence."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ def read_file(path: str | os.PathLike[str], most: float = float("inf")) -> bytes
 
     Args:
         path: of the file.
-        most: bytes that it may have.
+        most: its largest size, bytes.
 
     Raises:
-        OutputError: it does not exist, cannot be read, is larger, or is a folder, a pipe or a device, which may have no
-            end.
+        OutputError: it does not exist, cannot be read, is larger, or is a folder, a pipe or a device.
     """
     try:
         about = Path(path).stat()
         if not stat.S_ISREG(about.st_mode):
             raise OutputError(f"{path} cannot be read: it is not a regular file")
         if about.st_size > most:
-            raise OutputError(f"{path} cannot be read: it has {about.st_size} bytes, at most {most:.0f} make sense")
+            raise OutputError(f"{path} cannot be read: it has {about.st_size} bytes, at most {most:.0f} are allowed")
         return Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         raise OutputError(f"{path!s} cannot be read: {_why(error)}") from None

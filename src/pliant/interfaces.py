@@ -1,4 +1,4 @@
-"""The parts of a control loop. Each has `init` and `step`; state goes in and comes out, no part hides any.
+"""The parts of a control loop. Each has `init` and `step`; state is passed in and returned, no part keeps any.
 
 A state may own buffers that `step` reuses: the state passed in is consumed, keep only the one that comes out.
 """
@@ -22,11 +22,11 @@ CLOCK_ROUNDING = 1e-9
 """s; smaller than any period, larger than the rounding of a clock"""
 
 Compensation = Literal["none", "gravity", "gravity+coriolis"]
-"""what a robot's own controller adds, invisibly, to the torque that is sent"""
+"""what a robot's own controller adds to the torque that is sent, without reporting it"""
 
 
 class HasUnit(Protocol):
-    """Describes a diagnostic."""
+    """Unit and labels of a diagnostic channel."""
 
     @property
     def unit(self) -> str:
@@ -36,7 +36,7 @@ class HasUnit(Protocol):
 
 @dataclass(frozen=True)
 class ChannelUnit:
-    """A diagnostic of which the unit is all there is to say."""
+    """A diagnostic channel that has a unit only."""
 
     unit: str
 
@@ -50,13 +50,12 @@ class Lookahead:
     step: float
     """s between them"""
     lead: float = 0.0
-    """s from now to the first of them: commands that take effect later want later references"""
+    """s from now to the first of them; a command that takes effect later needs later references"""
     every: float = 0.0
-    """s between two looks, the first in the first tick; in between a source may leave the preview out. 0: in every
-    tick"""
+    """s between two previews, the first in the first tick; in between a source may leave it out. 0: in every tick"""
 
     def due(self, time: float, next_look: float) -> bool:
-        """Whether a look falls on a time in s, when the next one was expected at `next_look`."""
+        """Whether a preview is due at a time in s, if the next one is planned for `next_look`."""
         turned_back = time < next_look - self.every - CLOCK_ROUNDING
         return turned_back or time >= next_look - CLOCK_ROUNDING
 
@@ -70,19 +69,19 @@ class Lookahead:
 
 @dataclass(frozen=True)
 class Needs:
-    """What a controller wants to be told, beyond joint positions and velocities and its tasks' references.
+    """Signals that a controller needs, beyond joint positions and velocities and the references of its tasks.
 
-    Whoever wires a loop builds estimators and preview from it; no task and no study knows what a controller wants.
+    `wiring` builds estimators and preview from it; tasks and studies need not know the controller.
     """
 
     preview: Lookahead | None = None
-    """the reference at later instants; None: the present one is enough"""
+    """instants of the reference in the future; None: only the present one"""
     wrench: bool = False
     """the contact wrench at the frame that presses"""
     disturbance: Literal["none", "normal", "all"] = "none"
-    """the joint torque that the model does not explain, and how much of a contact's wrench the model explains"""
+    """estimated joint disturbance torque; the value says which part of a contact wrench the model explains"""
     environment: bool = False
-    """stiffness and damping of what the frame touches"""
+    """estimated stiffness and damping of the contact"""
     calm: bool = False
     """joint positions without white noise"""
     torque: bool = False
@@ -98,13 +97,13 @@ class Needs:
             raise ConfigError(f"Needs.disturbance: {options(['none', 'normal', 'all'], str(self.disturbance))}")
 
     def words(self) -> tuple[str, ...]:
-        """The same for people."""
+        """The same as text."""
         names = ("preview", "wrench", "environment", "torque", "posture")
         wanted = (self.preview is not None, self.wrench, self.environment, self.torque, self.posture)
         found = [name for name, wants in zip(names, wanted, strict=True) if wants]
         if self.disturbance != "none":
             found.append("disturbance")
-        return (*found, "calm positions") if self.calm else tuple(found)
+        return (*found, "joint positions without noise") if self.calm else tuple(found)
 
 
 _NO_CHANNELS: Mapping[str, HasUnit] = MappingProxyType({})
@@ -123,7 +122,7 @@ class Estimator(ABC, Generic[State]):
 
 
 class ReferenceSource(ABC, Generic[State]):
-    """Says where the robot should be and how hard it should press."""
+    """Gives the reference: where the robot should be and how hard it should press."""
 
     @abstractmethod
     def init(self, estimate: Estimate) -> State:
@@ -139,7 +138,7 @@ class Controller(ABC, Generic[State]):
 
     @property
     def needs(self) -> Needs:
-        """What it wants to be told; by default nothing special."""
+        """Signals that it needs; by default none beyond positions and velocities."""
         return Needs()
 
     @property
@@ -164,9 +163,9 @@ class Controller(ABC, Generic[State]):
         """
 
     def kept_back(self, state: State, torque: Array) -> State:
-        """Told by a layer outside that a part (n,) N·m of the last torque was not sent. Returns the next state.
+        """Called by an outer wrapper if a part (n,) N·m of the last torque was not sent. Returns the next state.
 
-        Most controllers do not care; those that book their energy do.
+        Controllers that account for their energy override it.
         """
         return state
 
@@ -179,12 +178,12 @@ class Plant(ABC, Generic[State]):
 
     @property
     def noisy(self) -> frozenset[str]:
-        """Fields of `Measurement` whose noise says that no two readings are equal."""
+        """Fields of `Measurement` with noise, so that no two readings are equal."""
         return frozenset()
 
     @property
     def compensates(self) -> Compensation:
-        """What the robot adds to the torque that is sent, by itself."""
+        """What the robot's own controller adds to the torque that is sent."""
         return "none"
 
     @abstractmethod
@@ -196,7 +195,7 @@ class Plant(ABC, Generic[State]):
         """Holds the command for one period. Returns the measurement at its end, and the world."""
 
     def truth(self, world: State) -> Truth | None:
-        """What really happens, for metrics and pictures; None on a real robot."""
+        """The true state, for metrics and figures; None on a real robot."""
         return None
 
 

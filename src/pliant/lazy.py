@@ -1,4 +1,4 @@
-"""Names that are imported when they are asked for, so that `import pliant` costs nothing."""
+"""Names that are imported on first use, so that `import pliant` is fast."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def make_callable(package: str, module: str, function: str) -> None:
 
     Args:
         package: name of the package that is being imported.
-        module, function: what a call of it means; imported by the first call.
+        module, function: what a call of the package runs; imported by the first call.
     """
 
     class CallablePackage(ModuleType):

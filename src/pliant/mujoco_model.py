@@ -1,7 +1,8 @@
 """A robot as a MuJoCo specification, made from its pinocchio model.
 
-Going through pinocchio's model rather than the robot's file gives locked joints, tools, MJCF and `package://` meshes
-one path, and both libraries the same numbers: mass matrix, bias and frame Jacobians agree to 1e-9.
+It starts from pinocchio's model and not from the robot's file. So locked joints, tools, MJCF and `package://` meshes
+need no second implementation, and both libraries have the same numbers: mass matrix, bias and frame Jacobians agree to
+1e-9.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ from pliant.spatial import Array, quaternion
 VISUAL_GROUP = 2
 """geom group of shapes that are drawn and never touch anything"""
 _LEAST = 1e-12
-"""kg, kg m²: MuJoCo wants some mass on every moving body, also between two joints at one place"""
+"""kg, kg m²: MuJoCo requires mass on every moving body, also between two joints at one point"""
 
 
 def spec_from_robot(robot: Robot) -> mujoco.MjSpec:
     """A MuJoCo specification with the robot's bodies, joints, frames (as sites of the same name) and looks.
 
     The robot stands in an empty world under gravity; there is no joint damping, friction, actuator or contact in it.
-    Joints have the names and the order of `robot.joint_names`, bodies are called after the joint that moves them.
+    Joints have the names and the order of `robot.joint_names`, bodies have the name of the joint that moves them.
 
     Args:
         robot: any robot; joints are revolute or prismatic.

@@ -1,4 +1,4 @@
-"""The fields of a configuration that hold a quantity: what it is, its unit, its bounds, and what is usual of it."""
+"""Fields of a configuration that hold a physical quantity: text, unit, bounds, usual range."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ def quantity(default: Any, unit: str, text: str, *, shown: tuple[float, float] |
         default: its value where none is given; `...`: one must be given.
         unit: such as "N/m"; "1" for a ratio.
         text: what it is, without the unit.
-        shown: lowest and highest value of its slider on the live page; both may be passed elsewhere.
-        limits: what a value has to keep, pydantic's `ge`, `gt`, `le`, `lt`, `min_length`.
+        shown: lowest and highest value of its slider on the live page; other values are allowed elsewhere.
+        limits: bounds of a value, pydantic's `ge`, `gt`, `le`, `lt`, `min_length`.
     """
     extra: dict[str, Any] = {"unit": unit}
     if shown is not None:
@@ -25,13 +25,13 @@ def quantity(default: Any, unit: str, text: str, *, shown: tuple[float, float] |
 
 
 def unit_of(about: FieldInfo) -> str:
-    """Unit of a field, "" of one that holds no quantity."""
+    """Unit of a field; "" if it holds no quantity."""
     extra = about.json_schema_extra
     return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
 def in_order(value: tuple[float, float]) -> tuple[float, float]:
-    """Validator of a range (lowest, highest). Raises ValueError if it is the other way round."""
+    """Validator of a range (lowest, highest). Raises ValueError if the order is reversed."""
     if value[0] > value[1]:
         raise ValueError("a range goes from low to high, [lowest, highest]")
     return value

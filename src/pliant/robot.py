@@ -1,4 +1,4 @@
-"""A robot: its rigid-body model, frames, limits and looks, from a URDF, an MJCF or a catalogue name."""
+"""A robot: its rigid-body model, frames, limits and visual shapes, from a URDF, an MJCF or a catalogue name."""
 
 from __future__ import annotations
 
@@ -31,23 +31,23 @@ class Robot:
 
     name: str
     model: pin.Model
-    """kinematics and inertia; joint damping and friction play no part in its bias"""
+    """kinematics and inertia, without joint damping and friction"""
     visual: pin.GeometryModel | None
     """shapes to draw; None if the meshes of the file could not be found"""
     home: Array
-    """(n,) a comfortable configuration, rad"""
+    """(n,) home configuration, rad"""
     source: str = ""
     """file that it was read from"""
     contact_radius: Mapping[str, float] = field(default_factory=dict)
-    """frame → radius in m of the sphere with which that frame touches things"""
+    """frame → radius in m of its contact sphere"""
     contact_bodies: Mapping[str, ToolBody] = field(default_factory=dict)
-    """frame → the cylinder or box with which it touches things, at several points"""
+    """frame → cylinder or box that makes contact at several points"""
     home_from: str = "given"
     """where the home comes from"""
     rotors_from: str = ""
-    """where the motors' inertia comes from; empty: nobody says one"""
+    """source of the motors' inertia; empty: none is given"""
     notes: tuple[str, ...] = ()
-    """what was assumed, changed or left out when the robot was read, in sentences"""
+    """sentences about what was assumed, changed or left out when the file was read"""
     faults: tuple[str, ...] = ()
     """why the robot cannot be simulated; its kinematics can be used all the same"""
 
@@ -97,7 +97,7 @@ class Robot:
 
     @property
     def frame_names(self) -> tuple[str, ...]:
-        """Without that of the world, to which nothing of the robot is fixed."""
+        """Without the world's frame, which is no part of the robot."""
         return tuple(frame.name for frame in self.model.frames if frame.name != _WORLD)
 
     @property
@@ -140,11 +140,11 @@ class Robot:
         return self.joint_names.index(name)
 
     def require_masses(self) -> None:
-        """Raises RobotError if the robot's masses and inertias are not those of bodies."""
+        """Raises RobotError if the robot's masses and inertias are not physically possible."""
         if self.faults:
             raise RobotError(
-                f"robot {self.name!r} cannot be simulated: {self.faults[0]}; mend its <inertial> (kinematics work"
-                " without)"
+                f"robot {self.name!r} cannot be simulated: {self.faults[0]}; correct its <inertial> (kinematics work"
+                " without it)"
             )
 
     def carries(self, frame: str, other: str) -> bool:
@@ -162,7 +162,7 @@ class Robot:
 
         Args:
             value: (n,) numbers.
-            what: what the value is, for the error.
+            what: name of the value, for the error.
 
         Raises:
             ShapeError: another number of entries than the robot has joints.
@@ -234,12 +234,12 @@ class Robot:
         return replace(self, contact_radius=dict(self.contact_radius) | {frame: radius})
 
     def touching_with(self, tool: Tool) -> Robot:
-        """The robot, which has the tool's frame, with the tool's shape touching things."""
+        """The robot, which already has the tool's frame, with the tool's shape as contact shape."""
         bodies = dict(self.contact_bodies) | ({tool.frame: tool.body} if tool.body else {})
         return replace(self, contact_bodies=bodies) if tool.body else self.with_contact(tool.frame, tool.radius)
 
     def with_tool(self, tool: Tool) -> Robot:
-        """The robot with a tool on its flange; adds its inertia, looks and contact frame."""
+        """The robot with a tool on its flange; adds its inertia, visual shape and contact frame."""
         tool.check()
         robot = self.with_frame(tool.frame, tool.parent, (0.0, 0.0, tool.length))
         carrier = robot.model.frames[robot.frame_id(tool.parent)]

@@ -1,4 +1,4 @@
-"""Time that is cut into periods: how many a duration is, and what a first-order lag keeps over one."""
+"""Sampled time: periods in a duration, and the coefficient of a first-order low-pass."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The values that travel round the control loop: the only types that cross folders.
+"""The signals of the control loop: the only types that are passed between folders.
 
     measurement ─▶ estimate ─▶ reference ─▶ command ─▶ plant ─▶ measurement
 
@@ -31,7 +31,7 @@ def _nothing() -> Mapping[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """What the sensors say at one instant, imperfections included."""
+    """Readings of the sensors at one instant, with their imperfections."""
 
     time: float
     """s since the start of the run"""
@@ -42,10 +42,10 @@ class Measurement:
     torque: Array
     """(n,) torque at the link side of each joint, N·m"""
     torque_sent: Array
-    """(n,) torque that was really sent in the period that ends now, after every clamp, N·m"""
+    """(n,) torque that was sent in the period that ends now, after every limit, N·m"""
     wrenches: Mapping[str, Array] = field(default_factory=_nothing)
-    """frame → (6,) wrench of a force/torque sensor at that frame, in the frame's own axes, N and N·m. It holds
-    everything the sensor feels, the tool's weight and inertia too."""
+    """frame → (6,) wrench of a force/torque sensor at that frame, in the frame's own axes, N and N·m. It includes
+    everything beyond the sensor, also weight and inertia of the tool."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +68,9 @@ class Estimate:
     disturbance: Array | None = None
     """(n,) joint torque that the model does not explain, N·m, where an observer runs"""
     environments: Mapping[str, Environment] = field(default_factory=_nothing)
-    """frame → stiffness and damping of what it touches, where they are estimated"""
+    """frame → stiffness and damping of its contact, where they are estimated"""
     surfaces: Mapping[str, FeltSurface] = field(default_factory=_nothing)
-    """frame → how the surface stands that it has touched, where that is estimated"""
+    """frame → pose of the surface that it has touched, where that is estimated"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,13 +215,13 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """What really happens in a simulated world. Only metrics and pictures see it; no controller does."""
+    """True state of a simulated world. Only metrics and figures use it; no controller does."""
 
     time: float
     q: Array
     v: Array
     torque: Array
-    """(n,) torque that really acts at the link side, N·m"""
+    """(n,) torque that acts at the link side, N·m"""
     positions: Mapping[str, Array] = field(default_factory=_nothing)
     """frame → (3,) m"""
     rotations: Mapping[str, Array] = field(default_factory=_nothing)
@@ -236,7 +236,7 @@ class Truth:
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """One turn of the loop as observers see it."""
+    """One cycle of the loop, for observers."""
 
     measurement: Measurement
     estimate: Estimate
@@ -247,4 +247,4 @@ class Tick:
     wall: Mapping[str, float] = field(default_factory=_nothing)
     """stage → seconds of wall time it took; never part of the reproducible log"""
     guard: int = 0
-    """what the guard found wrong in this tick, a `pliant.guard.Fault`; 0: nothing"""
+    """fault that the guard found in this tick, a `pliant.guard.Fault`; 0: nothing"""

@@ -1,8 +1,9 @@
 """Rotations and spatial vectors: the few formulas that several folders need.
 
 Conventions: SI units and radians, the world's z axis points up, spatial vectors carry the linear part first. The error
-of a pose is `target minus actual`, its rotational part `log(R_target R_actualᵀ)` in world axes. What pinocchio knows is
-pinocchio's: against arithmetic with more digits its exp and log are off by at most 4e-14 from angle 0 to π.
+of a pose is `target minus actual`, its rotational part `log(R_target R_actualᵀ)` in world axes. The functions use
+pinocchio where it has them: against arithmetic with more digits its exp and log are off by at most 4e-14 from angle 0
+to π.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Wall and CPU times of many repetitions of one thing."""
+"""Wall and CPU times of many repetitions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Stopwatch:
 
     @contextmanager
     def timed(self, counts: bool = True) -> Generator[None]:
-        """Times what stands inside; `counts=False`: a repetition that only warms up."""
+        """Measures the body of the `with` block; `counts=False`: a warm-up repetition."""
         wall, cpu = time.perf_counter_ns(), time.thread_time_ns()
         yield
         cpu, wall = time.thread_time_ns() - cpu, time.perf_counter_ns() - wall

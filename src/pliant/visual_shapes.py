@@ -1,4 +1,4 @@
-"""Shapes of everything in a scene, as people see them, and where they are at a configuration."""
+"""Visual shapes of a scene, and their poses at a configuration."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def looks_of(model: mujoco.MjModel, joints: int) -> tuple[Look, ...]:
 
 
 class Poser:
-    """Says where bodies are, from joint angles and the poses of free things."""
+    """Computes poses of bodies from joint angles and the poses of free things."""
 
     def __init__(self, model: mujoco.MjModel, joints: int) -> None:
         self.model, self._joints = model, joints

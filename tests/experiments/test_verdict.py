@@ -45,7 +45,7 @@ def test_a_joint_beyond_its_limit_is_named_with_size_and_time(iiwa14: Robot) -> 
 def test_a_force_was_asked_for_and_nothing_touched(iiwa14: Robot, asked: float, felt: float, fails: bool) -> None:
     ticks = [tick(k, np.zeros(7), asked, felt if k == 10 else 0.0) for k in range(20)]
     found = verdict(iiwa14, ticks)
-    assert found == ("never touched: frame flange was asked for 20 N and the robot met nothing" if fails else None)
+    assert found == ("no contact: frame flange should press with 20 N and the robot touched nothing" if fails else None)
 
 
 def test_contact_in_free_air_at_the_start_is_a_note_and_a_real_one_is_not() -> None:
@@ -73,5 +73,5 @@ def test_a_study_takes_the_verdict_and_keeps_the_numbers() -> None:
     )
     result = run_case(study, short)
     assert result.failure is not None
-    assert result.failure.startswith("never touched: frame foot was asked for 20 N")
+    assert result.failure.startswith("no contact: frame foot should press with 20 N")
     assert result.metrics

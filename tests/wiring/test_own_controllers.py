@@ -134,7 +134,7 @@ def test_what_an_own_controller_does_wrong_is_one_sentence(odd: str, name: str, 
     with pytest.raises(ConfigError, match=said):
         pliant.run("haptic", controller=f"{odd}:{name}", **SHORT)
     failure = pliant.run("haptic", controller=f"{odd}:sound", **SHORT).failure
-    assert str(failure).startswith("never touched")  # baseline: it runs to its end
+    assert str(failure).startswith("no contact: frame")  # baseline: it runs to its end
 
 
 def test_a_configuration_can_be_inherited(odd: str) -> None:
@@ -154,7 +154,7 @@ def test_who_needs_a_wrench_is_refused_where_nothing_feels_one(odd: str) -> None
         with pytest.raises(ConfigError, match="there is no force signal: set sensor=true"):
             pliant.run("haptic", controller=controller, sensor=False, **SHORT)
     failure = pliant.run("haptic", controller=f"{odd}:Still", sensor=False, **SHORT).failure
-    assert str(failure).startswith("never touched")  # it runs to its end
+    assert str(failure).startswith("no contact: frame")  # it runs to its end
 
 
 @pytest.mark.parametrize(
@@ -185,7 +185,7 @@ def test_what_makes_a_controller_what_it_is_cannot_be_set(study: str, controller
     """Otherwise a run would go by a name that is not its own."""
     config = merged(get_study(study).case(next(iter(get_study(study).cases))), {"controller": controller})
     get_study(study).build(config)
-    with pytest.raises(ConfigError, match=f"{controller!r} is what it is by"):
+    with pytest.raises(ConfigError, match=f"{controller!r} is defined by"):
         get_study(study).build(merged(config, {"control": changes}))
 
 

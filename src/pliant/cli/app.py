@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from pliant import __version__
-from pliant.cli import running, tools  # the commands enter themselves
+from pliant.cli import running, tools  # each module registers its commands
 from pliant.cli.program import app, out
 
 __all__ = ["app", "main", "running", "tools"]

@@ -15,10 +15,10 @@ from pliant.telemetry.output import write_text
 
 
 def bench_command(console: Console, what: str, file: Path | None) -> None:
-    """Times something and prints percentiles.
+    """Runs a benchmark and prints percentiles.
 
     Raises:
-        ConfigError: there is nothing of that name to time.
+        ConfigError: there is no benchmark of that name.
         OutputError: the JSON file cannot be written.
     """
     if what not in _BENCHES:

@@ -1,4 +1,4 @@
-"""The run that a user means on the command line, and where it writes."""
+"""The run that the command line asks for, and its output folder."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from pliant.experiments.config import assigned
 
 
 def resolve(target: str, case: str | None, overrides: Mapping[str, Any], assignments: Sequence[str]) -> Choice:
-    """The run that a user means on the command line. Raises ConfigError."""
+    """The run that the command line asks for. Raises ConfigError."""
     return chosen(target, case, overrides, assigned(assignments), ("an option", "--set"))
 
 
 def default_folder(study: Study[Any], case: str) -> Path:
-    """Where a run writes if nobody says."""
+    """Default output folder of a run."""
     return study_folder(study.name) / case
 
 
 def study_folder(name: str) -> Path:
-    """Where a study, or a task by the path of its file, writes if nobody says."""
+    """Default output folder of a study, or of a task that is given by the path of its file."""
     return Path("pliant-out") / Path(name).stem

@@ -1,4 +1,4 @@
-"""`pliant doctor`: is everything here, and is a configuration safe?"""
+"""`pliant doctor`: checks the installation, a robot file, or a configuration."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def doctor_command(console: Console, config: Path | None) -> None:
         table.add_row(name, version or "–", "✓" if version else escape(use))
     for name in _COMPILED:
         table.add_row(f"compiled core {name}", *map(escape, _compiled(name)))
-    table.add_row("off-screen pictures", *_rendering())
+    table.add_row("off-screen rendering", *_rendering())
     console.print(table)
 
 
@@ -90,7 +90,7 @@ def _compiled(name: str) -> tuple[str, str]:
     try:
         module = importlib.import_module(f"pliant.{name}")
     except ImportError as error:
-        compiler = "a C++ compiler is there" if shutil.which("c++") else "install a C++17 compiler, e.g. g++"
+        compiler = "a C++ compiler is installed" if shutil.which("c++") else "install a C++17 compiler, e.g. g++"
         return "–", f"✗ {error}; reinstall pliant ({compiler})"
     return str(getattr(module, "isa", lambda: "")()) or "yes", "✓"
 

@@ -1,4 +1,4 @@
-"""`pliant doctor ROBOT`: what was understood of a robot file, what is missing, and what was assumed."""
+"""`pliant doctor ROBOT`: what was read from a robot file, what is missing, and what was assumed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def print_robot(console: Console, source: str, locked: Sequence[str] = ()) -> No
     """Prints joints, limits, home, masses, gravity, frames and notes of a robot.
 
     Args:
-        console: where to.
+        console: where it prints.
         source: name or file.
         locked: `joint=angle` (rad or m) of joints that are fixed; none: those that the catalogue locks.
 

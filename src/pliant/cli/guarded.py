@@ -1,4 +1,4 @@
-"""How every command ends: an exit code and, if something is wrong, one sentence."""
+"""How every command ends: with an exit code and, after an error, one sentence."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from pliant.errors import PliantError, RunFailedError, told
 _err = Console(stderr=True)
 
 P = ParamSpec("P")
-_LONGEST = 1200  # letters of a sentence
+_LONGEST = 1200  # characters of a sentence
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
     """Exit code 2 for bad input, 1 when a run failed, 130 after Ctrl-C: one sentence, never a traceback.
 
-    What nobody foresaw ends with 2 too: its traceback is in a file that the sentence names."""
+    An unexpected error ends with 2 as well; its traceback is written to a file that the sentence names."""
 
     @functools.wraps(command)
     def wrapped(*args: P.args, **kwargs: P.kwargs) -> None:
@@ -40,10 +40,10 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except KeyboardInterrupt as error:
             _complain("interrupted", str(error) or "what was recorded until now is kept")
             raise typer.Exit(130) from None
-        except (typer.Exit, typer.Abort, BrokenPipeError):  # no errors of ours
+        except (typer.Exit, typer.Abort, BrokenPipeError):  # not pliant's errors
             raise
         except (Exception, SystemExit) as error:
-            if isinstance(error.__context__, BrokenPipeError):  # rich ends by SystemExit where nobody reads on
+            if isinstance(error.__context__, BrokenPipeError):  # rich raises SystemExit when the pipe is closed
                 raise
             _complain("error", f"pliant {__version__} did not foresee this ({told(error)}); {_kept()}")
             raise typer.Exit(2) from None
@@ -52,13 +52,13 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
 
 def _complain(kind: str, text: str) -> None:
-    if len(text) > _LONGEST:  # somebody's word of thousands of letters
+    if len(text) > _LONGEST:  # an argument with thousands of characters
         text = f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 2 :]}"
     _err.print(f"{kind}: {text}", style="red", markup=False, highlight=False, soft_wrap=True)
 
 
 def _kept() -> str:
-    """Writes the traceback of the error that is being handled into a file, and says where it is."""
+    """Writes the traceback of the present error to a file. Returns a text that names the file."""
     text = f"pliant {__version__}: {sys.argv[1:]!r}\n\n{traceback.format_exc()}"
     try:
         file, name = tempfile.mkstemp(prefix="pliant-", suffix=".txt", text=True)

@@ -17,7 +17,7 @@ from pliant.wiring.registry import broken_controllers, controllers, find_control
 
 
 def list_command(console: Console, what: str | None, name: str | None = None) -> None:
-    """Prints one of the lists, all, or what is known of one controller. Raises ConfigError for another name."""
+    """Prints one list, all lists, or the details of one controller. Raises ConfigError for an unknown name."""
     if what is not None and what not in _LISTS:
         raise ConfigError(f"there is no list of {what!r}; {options(_LISTS, what)}")
     if name is not None:
@@ -47,7 +47,7 @@ def _robots() -> Table:
 
 def _controllers() -> Table:
     table = Table(title="controllers", title_justify="left")
-    table.add_column("controller", no_wrap=True)  # what one has to type
+    table.add_column("controller", no_wrap=True)  # what the user has to type
     for heading in ("family", "needs", "guarantees", "what it is"):
         table.add_column(heading)
     for entry in controllers().values():

@@ -29,7 +29,7 @@ def live_command(
     """Serves the page until Ctrl-C.
 
     Raises:
-        PliantError: bad input, or an address that cannot be listened at.
+        PliantError: bad input, or an address at which the server cannot listen.
     """
     require_viser()
     if target.endswith(".mcap"):
@@ -55,7 +55,7 @@ def live_command(
 
 
 def announce(console: Console, complain: Console, url: str, exposed: bool) -> None:
-    """Prints where the page is, with a warning where others can reach it."""
+    """Prints the address of the page, with a warning if other machines can reach it."""
     if exposed:
         text = "warning: other machines can reach this page; whoever has the link can steer, and nothing is encrypted"
         complain.print(text, style="yellow", markup=False, highlight=False, soft_wrap=True)

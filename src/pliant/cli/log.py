@@ -24,17 +24,17 @@ def log_command(console: Console, file: Path, plot: bool, out: Path | None) -> N
     log = Log.open(file)
     console.print(describe(log))
     if log.truncated:
-        console.print("the log is cut off or damaged: what is shown is what could be read", style="yellow")
+        console.print("the log is truncated or damaged: only what could be read is shown", style="yellow")
     if plot:
         for figure in plot_log(log, out or file.with_suffix("")):
             console.print(f"figure  {figure}", markup=False, highlight=False, soft_wrap=True)
 
 
 def export_command(console: Console, files: Sequence[Path], folder: Path, fps: int, action: str | None) -> None:
-    """Writes logs as a data set of LeRobot. Args: action: channels, with commas between them; None: the torque.
+    """Writes logs as a LeRobot data set. Args: action: channels, separated by commas; None: the torque.
 
     Raises:
-        ConfigError: the logs do not fit together, or a channel is not there.
+        ConfigError: the logs do not fit together, or a channel does not exist.
         OutputError: a file cannot be read or written.
     """
     channels = ACTION if action is None else tuple(part.strip() for part in action.split(",") if part.strip())

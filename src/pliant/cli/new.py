@@ -1,4 +1,4 @@
-"""`pliant new`: files to begin with."""
+"""`pliant new`: writes template files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pliant.errors import ConfigError, OutputError, options
 from pliant.telemetry.output import write_text
 
 _KINDS = {"controller": "MyController"}
-"""kind → name that its template has in place of the user's"""
+"""kind → name in its template that the user's name replaces"""
 
 
 def new_command(console: Console, what: str, name: str, out: Path | None) -> None:
@@ -21,7 +21,7 @@ def new_command(console: Console, what: str, name: str, out: Path | None) -> Non
 
     Raises:
         ConfigError: there is no such template, or the name is not one of a Python class.
-        OutputError: a file is there already, or cannot be written.
+        OutputError: a file already exists, or cannot be written.
     """
     if what not in _KINDS:
         raise ConfigError(f"there is no template {what!r}; {options([*_KINDS, 'task'], what)}")
@@ -36,7 +36,7 @@ def new_command(console: Console, what: str, name: str, out: Path | None) -> Non
     test = path.with_name(f"test_{path.name}")
     for file in (path, test):
         if file.exists():
-            raise OutputError(f"{file} is there already; choose another with -o")
+            raise OutputError(f"{file} already exists; choose another name with -o")
     for file, template in ((path, f"{what}.py"), (test, f"test_{what}.py")):
         text = _template(template)
         write_text(file, text.replace("my_controller.py", path.name).replace(_KINDS[what], name))

@@ -1,4 +1,5 @@
-"""`pliant list controllers NAME`: what one controller is, needs, takes, and where it was found to hold."""
+"""`pliant list controllers NAME`: what one controller needs, its parameters, and where it was found to hold the
+force."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ _LONGEST = 30  # characters of a value
 
 
 def print_controller(console: Console, entry: ControllerEntry[Any]) -> None:
-    """Everything that is known of a controller, one that has no name too."""
+    """Prints the details of a controller, by its name or as `module:Class`."""
     regulates = "regulates the contact force" if entry.regulates_force else "regulates no force"
     facts = {
         "what it is": f"{entry.summary}; {regulates}",
@@ -53,7 +54,7 @@ def _parameters(entry: ControllerEntry[Any]) -> Table:
 
 
 def _print_domain(console: Console, found: list[DomainRun]) -> None:
-    """Rows: robot and delay; columns: stiffness of the surface; below, why it does not hold where it does not."""
+    """Rows: robot and delay; columns: stiffness of the surface; below the table, the reasons where it does not hold."""
     table = Table(
         title="where it holds with suggested gains: 20 N on a plane, 0.05 m/s, drives of 30 Hz, friction 0.25",
         title_justify="left",

@@ -1,4 +1,4 @@
-"""A study's tables as the paper prints them, in Markdown, from its summary."""
+"""Tables of a study in the form of the paper, in Markdown, from its summary."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pliant.telemetry.table import value_text
 
 
 def paper_tables(study: Study[Any], summary: Summary) -> str:
-    """Every table of which there are rows; empty where there are none."""
+    """Every table that has rows; empty without any."""
     parts: list[str] = []
     for name, case in study.cases.items():
         for table in case.tables:
@@ -24,8 +24,8 @@ def paper_tables(study: Study[Any], summary: Summary) -> str:
 
 
 def _markdown(table: PaperTable, rows: Sequence[CaseSummary]) -> str:
-    """A line per metric, a column per controller; the paper's number in brackets. Runs that failed enter no line but
-    the last one."""
+    """A line per metric, a column per controller; the paper's number in brackets. Failed runs count in the last line
+    only."""
     lines = ["| | " + " | ".join(row.controller for row in rows) + " |", "|---|" + "---:|" * len(rows)]
     for name, heading in table.metrics.items():
         found = [_found(row, name) for row in rows]
@@ -47,7 +47,7 @@ def _found(row: CaseSummary, name: str) -> Metric | None:
 
 
 def _cell(metric: Metric | None, ended: int) -> str:
-    """The value, of how many runs where those are fewer than ended, and the paper's number."""
+    """The value, the number of runs it is of if some runs lack it, and the paper's number."""
     if metric is None:
         return "–"
     fewer = "" if metric.runs in (None, ended) else f", n = {metric.runs}"

@@ -1,4 +1,4 @@
-"""The program `pliant`: its consoles, and the options that several commands have."""
+"""The program `pliant`: its consoles, and the options that several commands share."""
 
 from __future__ import annotations
 

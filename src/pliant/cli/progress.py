@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressC
 
 @contextmanager
 def progress_bar(console: Console, title: str) -> Generator[Callable[[float], None], None, None]:
-    """A bar for one run; the function that it yields takes the share that is done, 0…1."""
+    """A progress bar for one run; the function that it yields takes the completed share, 0…1."""
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as progress:
         task = progress.add_task(title, total=1.0)
@@ -20,13 +20,13 @@ def progress_bar(console: Console, title: str) -> Generator[Callable[[float], No
 
 @contextmanager
 def count_bar(console: Console, title: str, total: int, done: int = 0) -> Generator[Callable[[bool], None], None, None]:
-    """A bar for many runs; the function that it yields is called after each, with whether it failed.
+    """A progress bar for many runs; the function that it yields is called after each run, with whether it failed.
 
     Args:
         console: where it is drawn.
-        title: before it.
-        total: how many there are.
-        done: how many were done before.
+        title: text before the bar.
+        total: number of runs.
+        done: number of runs completed before.
     """
     failed = 0
     columns = (

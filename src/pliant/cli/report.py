@@ -1,4 +1,4 @@
-"""What the terminal shows of results, and the files beside it."""
+"""Results in the terminal, and their files."""
 
 from __future__ import annotations
 
@@ -19,5 +19,5 @@ def save_summary(study: Study[Any], results: Sequence[Result], folder: Path) -> 
 
 
 def print_results(console: Console, study: Study[Any], results: Sequence[Result]) -> None:
-    """Prints the table of metrics beside paper and target."""
+    """Prints the metrics with the paper's numbers and the targets."""
     console.print(summary_table(summarised(study, results)))

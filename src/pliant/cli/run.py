@@ -31,7 +31,7 @@ def run_command(
     live: bool = False,
     figures: bool = True,
 ) -> None:
-    """Runs one case. Args: live: with a page that shows and steers it, paced to wall time; figures: whether to draw.
+    """Runs one case. Args: live: with a live page, at the speed of wall time; figures: whether to write figures.
 
     Raises:
         PliantError: bad input; nothing was run.
@@ -45,7 +45,7 @@ def run_command(
     for note in experiment.robot.notes:
         complain.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
     _warn(complain, experiment.warnings)
-    again = write_config(study, config, folder)  # before the run: one that is broken off can be made again
+    again = write_config(study, config, folder)  # written before the run, so that an interrupted run can be repeated
     with (
         _page(console, complain, study, config, experiment, folder, live) as more,
         progress_bar(complain, f"{study.name} {config.case} · {config.controller}") as progress,
@@ -54,7 +54,7 @@ def run_command(
     _warn(complain, result.warnings[len(experiment.warnings) :])
     summary = save_summary(study, [result], folder)
     if result.failure is not None:
-        if result.metrics:  # it reached its end, and its numbers may tell why it is none the less a failure
+        if result.metrics:  # it reached its end, but its metrics may still make it a failure
             print_results(console, study, [result])
         raise RunFailedError(f"{result.failure}; the log until then is {result.log}")
     print_results(console, study, [result])
@@ -79,7 +79,7 @@ def _page(
     folder: Path,
     live: bool,
 ) -> Generator[dict[str, Any], None, None]:
-    """What `run_case` gets beside the run itself: with a page, a loop that the page can follow and steer."""
+    """Arguments of `run_case`: with a page, a loop that the page can show and steer."""
     if not live:
         yield {"experiment": experiment}
         return
@@ -102,7 +102,7 @@ def show_config(
     overrides: Mapping[str, Any],
     assignments: Sequence[str],
 ) -> None:
-    """Prints every value of a run, its unit and where it comes from; runs nothing. Raises PliantError: bad input."""
+    """Prints each value of a run, its unit and its origin; runs nothing. Raises PliantError: bad input."""
     choice = resolve(target, case, overrides, assignments)
     rows = origins(choice, choice.study.build(choice.config).parameters)
     table = [("key", "value", "unit", "from"), *((row.key, row.shown, row.unit, row.origin) for row in rows)]

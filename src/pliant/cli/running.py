@@ -22,8 +22,8 @@ def run(
         str,
         typer.Argument(
             metavar="[TASK.toml|TASK|STUDY|CONFIG.toml|FILE.mcap]",
-            help="A task file, a task or study by name, a TOML file with `study = ...` and any of its values, or"
-            " config.toml or log of a run, which is repeated.",
+            help="A task file, the name of a task or study, a TOML file with `study = ...` and any of its values, or"
+            " the config.toml or log of a run, which is then repeated.",
         ),
     ] = "stack",
     case: Annotated[str | None, typer.Option(help="Case of the study; see `pliant list studies`.")] = None,
@@ -36,9 +36,9 @@ def run(
     live: Annotated[
         bool, typer.Option("--live", help="Opens a page beside the run, which then follows wall time.")
     ] = False,
-    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Whether to draw.")] = True,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Whether to write figures.")] = True,
     show: Annotated[
-        bool, typer.Option("--show-config", help="Prints every value, its unit and where it comes from; runs nothing.")
+        bool, typer.Option("--show-config", help="Prints each value, its unit and its origin; runs nothing.")
     ] = False,
 ) -> None:
     """Runs one case: a table, figures, a log, summary.json, and config.toml, which repeats it."""
@@ -62,32 +62,33 @@ def study(
     seeds: Annotated[
         int | None, typer.Option(min=1, help="Seeds per case with random draws (default: the study's own).")
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
+    jobs: Annotated[int, typer.Option(min=1, help="Number of parallel runs, each in its own process.")] = 1,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="tcp://HOST:PORT", help="Runs on the workers of a running dask scheduler.")
+        str | None, typer.Option(metavar="tcp://HOST:PORT", help="Uses the workers of a running dask scheduler.")
     ] = None,
     resume: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Goes on with an interrupted study: runs what DIR lacks.")
+        Path | None,
+        typer.Option(metavar="DIR", help="Continues an interrupted study: makes the runs that are missing in DIR."),
     ] = None,
     logs: Annotated[
-        bool, typer.Option("--logs", help="Keep the log of every run, not only of those that are drawn.")
+        bool, typer.Option("--logs", help="Keeps the log of every run, not only of those with figures.")
     ] = False,
     tune: Annotated[
         str | None,
         typer.Option(
             metavar="CONTROLLER",
-            help="Searches for this controller's best parameters instead, on the robot of a --case.",
+            help="Searches for the best parameters of this controller instead, on the robot of a --case.",
         ),
     ] = None,
     trials: Annotated[
-        int | None, typer.Option(min=1, help="Parameter sets that --tune tries.", show_default="64")
+        int | None, typer.Option(min=1, help="Number of parameter sets that --tune tries.", show_default="64")
     ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of --tune's search.", show_default="0")] = None,
     metric: Metrics = None,
     out: Out = None,
     set_: Sets = None,
 ) -> None:
-    """Runs a whole study, baselines included: the tables and figures of a paper, beside the paper's numbers."""
+    """Runs a whole study with its baselines: the tables and figures of a paper, with the paper's numbers."""
     from pliant.cli.study import resume_command, study_command
     from pliant.experiments.results import Request
 
@@ -131,13 +132,16 @@ def live(
     robot: RobotOption = None,
     seed: Seed = None,
     host: Annotated[
-        str, typer.Option(help="Address to listen at. Any but the default lets other machines in that have the link.")
+        str,
+        typer.Option(
+            help="Address to listen at. With any but the default, other machines that have the link can connect."
+        ),
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free one.")] = 8080,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free port.")] = 8080,
     out: Out = None,
     set_: Sets = None,
 ) -> None:
-    """Opens a page in the browser: the robot moves, every parameter can be turned, every link pushed."""
+    """Opens a page in the browser that shows the robot, changes parameters and pushes links."""
     from pliant.cli.live import live_command
 
     overrides = {"controller": controller, "robot": robot, "seed": seed}
@@ -147,18 +151,20 @@ def live(
 @program.app.command()
 @guarded
 def compare(
-    target: Annotated[str, typer.Argument(metavar="TASK.toml|TASK|STUDY", help="What to run with each controller.")],
+    target: Annotated[
+        str, typer.Argument(metavar="TASK.toml|TASK|STUDY", help="Task, study or file that each controller runs.")
+    ],
     controllers: Annotated[
         str, typer.Option(metavar="A,B,…", help="Controllers, by name or as MODULE:CLASS or FILE.py:CLASS.")
     ],
     case: Annotated[str | None, typer.Option(help="Variant of the task, or case of the study.")] = None,
-    seeds: Annotated[int, typer.Option(min=1, help="Seeds of each.")] = 3,
-    jobs: Annotated[int, typer.Option(min=1, help="Runs at the same time, each in a process of its own.")] = 1,
+    seeds: Annotated[int, typer.Option(min=1, help="Number of seeds per controller.")] = 3,
+    jobs: Annotated[int, typer.Option(min=1, help="Number of parallel runs, each in its own process.")] = 1,
     metric: Metrics = None,
     out: Out = None,
     set_: Sets = None,
 ) -> None:
-    """Runs one task with several controllers, on the same seeds, and puts them into one table."""
+    """Runs one task with several controllers and the same seeds, and prints one table."""
     from pliant.cli.choose import study_folder
     from pliant.cli.study import study_command
     from pliant.experiments.registry import get_study

@@ -1,4 +1,4 @@
-"""`pliant study`: every case of a study, with baselines and seeds; tables and figures beside the paper's."""
+"""`pliant study`: every case of a study, with baselines and seeds; tables and figures, with the paper's numbers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def study_command(
 ) -> None:
     """Runs a study, or some of its cases.
 
-    Failed runs are counted and shown; Ctrl-C keeps what was finished.
+    Failed runs are counted and shown; after Ctrl-C the finished runs are kept.
 
     Raises:
         PliantError: bad input; nothing was run.
@@ -44,7 +44,7 @@ def study_command(
 def resume_command(
     console: Console, complain: Console, folder: Path, study: str | None, jobs: int, scheduler: str | None
 ) -> None:
-    """Goes on with a study that was interrupted: runs what its `results.parquet` lacks, and reports over all.
+    """Continues an interrupted study: makes the runs that its `results.parquet` lacks, and reports on all runs.
 
     Raises:
         PliantError: bad input; nothing was run.
@@ -125,7 +125,7 @@ def _how_to_resume(store: ResultStore, total: int, folder: Path) -> str:
 def _finish(
     console: Console, study: Study[Any], results: Sequence[Result], folder: Path, table: Path, *, figures: bool
 ) -> None:
-    """Writes and prints what all runs say together; whoever interrupted does not want to wait for figures."""
+    """Writes and prints the summary of all runs; after an interruption, without figures."""
     summary = save_summary(study, results, folder)
     report = folder / "report.md"
     rows = summarised(study, results)

@@ -1,4 +1,4 @@
-"""`pliant new task`, `pliant task schema`: task files, begun and described."""
+"""`pliant new task`, `pliant task schema` and `pliant task check`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SIZES = {
     "hold": ("time = 4.0", "s"),
     "file": ('file = "path.csv"', "columns x, y; z, time, speed, force if wanted", 'unit = "mm"', ""),
 }
-"""pattern → lines and what they mean"""
+"""pattern → lines of the file, with comments"""
 _TEMPLATE = """\
 format = 1
 robot = "{robot}"                                 # `pliant list robots`, or a URDF or MJCF file
@@ -49,7 +49,7 @@ _SAMPLE = "x,y\n-60,-20\n60,-20\n60,20\n-60,20\n"
 
 
 def new_task_command(console: Console, pattern: str, out: Path | None, robot: str) -> None:
-    """Writes a task file to begin with. Raises ConfigError for an unknown pattern or a file that is there already."""
+    """Writes a task file as a template. Raises ConfigError for an unknown pattern or a file that already exists."""
     if pattern not in _SIZES:
         raise ConfigError(f"there is no pattern {pattern!r}; {options(_SIZES, pattern)}")
     file = out or Path(f"{pattern}.toml")
@@ -89,11 +89,11 @@ def check_command(
     assignments: Sequence[str],
     out: Path | None,
 ) -> None:
-    """Whether a robot can do a task, as it is believed and in ten drawn worlds: a table and a picture.
+    """Whether a robot can do a task, as believed and in ten random worlds: a table and a figure.
 
     Raises:
         PliantError: bad input.
-        RunFailedError: it cannot; the sentence says where it fails first and what would help.
+        RunFailedError: it cannot; the sentence says where it first fails and what would help.
     """
     from pliant.cli.choose import resolve, study_folder
     from pliant.errors import RunFailedError
@@ -128,7 +128,7 @@ def check_command(
     drawn = len(found.surfaces) - 1
     _say(
         console,
-        f"possible as believed and in {drawn} drawn worlds" if drawn else "possible; no seed draws another way",
+        f"possible as believed and in {drawn} random worlds" if drawn else "possible; no seed draws another way",
     )
 
 

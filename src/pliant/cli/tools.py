@@ -1,4 +1,4 @@
-"""Commands that look at something or begin it: `pliant log`, `bench`, `list`, `new`, `doctor`, `task`."""
+"""Commands that inspect something or write a template: `pliant log`, `bench`, `list`, `new`, `doctor`, `task`."""
 
 from __future__ import annotations
 
@@ -18,19 +18,26 @@ from pliant.errors import ConfigError
 def log(
     words: Annotated[
         list[str],
-        typer.Argument(metavar="[export|animate] FILE.mcap…", help="A log that pliant wrote; of an export several."),
+        typer.Argument(
+            metavar="[export|animate] FILE.mcap…", help="A log that pliant wrote; for an export, one or more."
+        ),
     ],
     plot: Annotated[bool, typer.Option("--plot", help="Draws the log into PNG files.")] = False,
     lerobot: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where an export goes: a LeRobot data set, layout v2.1.")
+        Path | None, typer.Option(metavar="DIR", help="Output of an export: a LeRobot data set, layout v2.1.")
     ] = None,
     fps: Annotated[int | None, typer.Option(help="Frames per second of an export.", show_default="50")] = None,
     action: Annotated[
-        str | None, typer.Option(metavar="CHANNEL,…", help="Action of an export.", show_default="command/torque")
+        str | None,
+        typer.Option(
+            metavar="CHANNEL,…",
+            help="Channels that are the action of an export, separated by commas.",
+            show_default="command/torque",
+        ),
     ] = None,
     out: Out = None,
 ) -> None:
-    """Says what is in a log: channels, units, rates, metrics; exports logs; animates one (--out FILE.webp)."""
+    """Shows the contents of a log: channels, units, rates, metrics. Exports logs, or animates one (--out FILE.webp)."""
     from pliant.cli.log import animate_command, export_command, log_command
 
     given = [name for name, value in (("--lerobot", lerobot), ("--fps", fps), ("--action", action)) if value]
@@ -50,10 +57,10 @@ def log(
 @program.app.command()
 @guarded
 def bench(
-    what: Annotated[str, typer.Argument(metavar="[controllers]", help="What to time.")] = "controllers",
+    what: Annotated[str, typer.Argument(metavar="[controllers]", help="What to measure.")] = "controllers",
     json_: Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Writes the numbers as JSON.")] = None,
 ) -> None:
-    """Times one step: median, p90, p99 and maximum of the CPU time, in microseconds."""
+    """Measures one step: median, p90, p99 and maximum of the CPU time, in microseconds."""
     from pliant.cli.bench import bench_command
 
     bench_command(program.out, what, json_)
@@ -63,16 +70,19 @@ def bench(
 @guarded
 def list_(
     what: Annotated[
-        str | None, typer.Argument(metavar="[robots|controllers|studies|tasks]", help="What to list; nothing: all.")
+        str | None,
+        typer.Argument(metavar="[robots|controllers|studies|tasks]", help="What to list; by default everything."),
     ] = None,
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="[NAME]", help="One controller, my_module:MyController too: its needs, parameters, where it holds."
+            metavar="[NAME]",
+            help="One controller, by name or as my_module:MyController: its needs, its parameters, and where"
+            " it holds the force.",
         ),
     ] = None,
 ) -> None:
-    """Lists robots, controllers, studies and tasks; of one controller all that is known."""
+    """Lists robots, controllers, studies and tasks; for one controller, its details."""
     from pliant.cli.listing import list_command
 
     list_command(program.out, what, name)
@@ -81,17 +91,21 @@ def list_(
 @program.app.command()
 @guarded
 def new(
-    what: Annotated[str, typer.Argument(metavar="task|controller", help="What to begin.")],
+    what: Annotated[str, typer.Argument(metavar="task|controller", help="What to write.")],
     name: Annotated[
         str,
-        typer.Argument(metavar="PATTERN|NAME", help="A task's raster, spiral, circle, line, …; a Python class's name."),
+        typer.Argument(
+            metavar="PATTERN|NAME",
+            help="For a task its pattern (raster, spiral, circle, line, …); for a controller the name of its"
+            " Python class.",
+        ),
     ],
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="The file (default: after its name).")
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="The file (default: from the name).")
     ] = None,
     robot: Annotated[str, typer.Option(metavar="NAME|FILE", help="The robot of a task.")] = "iiwa14",
 ) -> None:
-    """Writes a file to begin with: a contact task, or a controller of your own with a test of it."""
+    """Writes a template: a contact task, or a controller of your own with its test."""
     from pliant.cli.new import new_command
     from pliant.cli.task import new_task_command
 
@@ -104,23 +118,22 @@ def new(
 @program.app.command()
 @guarded
 def doctor(
-    robot: Annotated[
-        str | None, typer.Argument(metavar="[ROBOT|FILE]", help="A robot: what was understood of it.")
-    ] = None,
+    robot: Annotated[str | None, typer.Argument(metavar="[ROBOT|FILE]", help="A robot: name or file to check.")] = None,
     locked: Annotated[
         list[str] | None,
-        typer.Option(metavar="JOINT=ANGLE", help="A joint of ROBOT that is fixed (rad or m); can be repeated."),
+        typer.Option(metavar="JOINT=ANGLE", help="A joint of ROBOT that is fixed (rad or m); repeatable."),
     ] = None,
     config: Annotated[
         Path | None, typer.Option("--config", metavar="CONFIG.toml", help="A configuration to check for unsafe gains.")
     ] = None,
 ) -> None:
-    """Checks this installation; with ROBOT, what was understood of a robot file; with --config, a configuration."""
+    """Checks this installation; with ROBOT, shows what was read from a robot file; with --config, checks a
+    configuration."""
     from pliant.cli.doctor import doctor_command
     from pliant.cli.doctor_robot import print_robot
 
     if robot is None and locked:
-        raise ConfigError("--locked is of a robot: pliant doctor ROBOT --locked JOINT=ANGLE")
+        raise ConfigError("--locked needs a robot: pliant doctor ROBOT --locked JOINT=ANGLE")
     if robot is not None:
         print_robot(program.out, robot, locked or [])
     if robot is None or config is not None:
@@ -137,7 +150,7 @@ def task(
     out: Out = None,
     set_: Sets = None,
 ) -> None:
-    """Says whether a robot can do a task (check), or what can stand in a task file (schema)."""
+    """Checks whether a robot can do a task (check), or prints the JSON schema of task files (schema)."""
     from pliant.cli.task import check_command, schema_command
 
     if action == "schema" and target is None:

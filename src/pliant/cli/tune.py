@@ -42,7 +42,7 @@ def tune_command(
     jobs: int,
     scheduler: str | None,
 ) -> None:
-    """Searches; Ctrl-C keeps the best until then.
+    """Searches; after Ctrl-C the best trial so far is kept.
 
     Raises:
         PliantError: bad input; nothing was run.
@@ -73,7 +73,7 @@ def _finish(
 ) -> None:
     table = folder / "trials.parquet"
     _write_trials(table, sought, made, about)
-    best = min(made, key=lambda trial: trial.objective)  # the earliest of equals: the start, if nothing is better
+    best = min(made, key=lambda trial: trial.objective)  # the first of equal trials: the start, if no other is better
     toml = folder / "tuned.toml"
     write_text(toml, _toml(sought, made, best, about))
     figure = _draw(sought, made, about, folder / "trials.png")

@@ -1,4 +1,4 @@
-"""What is unsafe about the parameters of an impedance, said before it runs."""
+"""Warnings about unsafe impedance parameters, before a run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
 
 SAFE_PHASE = 0.4
-"""ω T_s up to which a sampled axis was found to stay stable (a 1-DoF mass fails at 0.8)"""
+"""largest ω T_s at which a sampled axis was found stable (a 1-DoF mass becomes unstable at 0.8)"""
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class Advice:
     axis: int
     rule: Literal["sampling", "actuator", "knee"]
     value: float
-    """what the parameters give, in the unit of the rule: rad, rad/s or J"""
+    """value of the checked quantity, in the unit of the rule: rad, rad/s or J"""
     limit: float
-    """what would be safe, in the same unit"""
+    """its safe limit, in the same unit"""
     message: str
 
 
@@ -58,7 +58,7 @@ def advise(
     Returns:
         Warnings, none if all is well. Rules: ω T_s ≤ 0.4 with ω = √(K_0/Λ); ω below the actuators' bandwidth; and
         the energy that one sample lets through when the error crosses the knee outward, at most ΔF·v·T_s (half of that
-        on average) where the bend is shorter than the way of one sample.
+        on average) where the bend is shorter than the motion in one sample.
     """
     inertias = np.broadcast_to(np.asarray(inertia, dtype=np.float64), (tuning.axes,))
     profile = ForceProfile.of(tuning, shape)
@@ -123,7 +123,7 @@ def _actuator(axis: int, Lambda: float, omega: float, bandwidth: float) -> Advic
 
 
 def _knee_leak(profile: ForceProfile, axis: int, speed: float, period: float) -> float:
-    """J that one sample lets through: the force held during a sample lags behind by what the bend rose meanwhile."""
+    """J of leakage in one sample: the force that is held lags behind the rise of the profile within the bend."""
     rise = float(profile.force_max[axis] - profile.knee_force[axis])
     way = speed * period
     if profile.shape is Shape.EXPONENTIAL:
@@ -136,6 +136,6 @@ def _knee_leak(profile: ForceProfile, axis: int, speed: float, period: float) ->
 def _knee(axis: int, leak: float, limit: float, speed: float) -> Advice:
     message = (
         f"the profile bends so sharply that one sample leaks up to {leak:.3g} J when the error crosses the knee at"
-        f" {speed:g} m/s or rad/s; safe: a longer way from linear_range x_0 to range x_b, or a smaller force_max"
+        f" {speed:g} m/s or rad/s; safe: a larger distance from linear_range x_0 to range x_b, or a smaller force_max"
     )
     return Advice(axis, "knee", leak, limit, message)

@@ -1,7 +1,7 @@
-"""The fractal attractor: when an axis diverges, when it converges, and which force it gives.
+"""The fractal attractor: when an axis diverges, when it converges, and its force.
 
-This module is the readable form. The stack runs the same logic compiled (`cpp/impedance`); tests compare them tick by
-tick.
+This module is the reference
+implementation in Python. The stack runs the same logic compiled (`cpp/impedance`); tests compare them tick by tick.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ class Law(StrEnum):
     """Which force an axis gives on the way back to its target."""
 
     CAPPED = "capped"
-    """bounded by F_max; passive for any switching between divergence and convergence in continuous time; sampled, an
-    account of its energy bounds what it draws, to the millijoules of docs/controllers.md"""
+    """bounded by F_max; passive for any switching between divergence and convergence in continuous time; sampled, a
+    passivity account bounds the energy that it can generate, to the millijoules given in docs/controllers.md"""
     HAPFIC = "hapfic"
     """[HapFIC] eq. 1 as printed; creates energy when the convergence is interrupted"""
     STACK_PRINTED = "stack-printed"
-    """[Stack] Algorithm 1 as printed; its sign pushes away from the target, it never settles"""
+    """[Stack] Algorithm 1 as printed; its sign pushes away from the target, so it never settles"""
     STACK_CORRECTED = "stack-corrected"
-    """[Stack] Algorithm 1 with the sign turned round; jumps where convergence starts, exceeds F_max past saturation"""
+    """[Stack] Algorithm 1 with the sign reversed; jumps where convergence starts, exceeds F_max beyond saturation"""
     SPRING = "spring"
     """no attractor: the profile alone, a spring without damping"""
 
@@ -48,7 +48,7 @@ class AttractorState:
     converging: Flags
     """bool"""
     hold: Array
-    """s for which the rate has been too small to tell the direction"""
+    """s for which the rate has been too small to determine the direction"""
     errors: tuple[Array, Array, Array]
     """the last three errors, newest first, m or rad"""
     rate: Array
@@ -60,19 +60,19 @@ class AttractorState:
     gap: Array
     """force that was missing when the convergence ended, N or N·m"""
     blend: Array
-    """share of the gap that is still missing, 1…0"""
+    """share of that force that is still missing, 1…0"""
     account: AccountState | None = None
     """of the capped law; None before the first step"""
 
 
 @dataclass(frozen=True)
 class Attractor:
-    """Phase logic and force law of `k` axes at a fixed period. Stateless: the state goes in and comes out."""
+    """Phase logic and force law of `k` axes at a fixed period. Stateless: the state is passed in and returned."""
 
     period: float
     """s"""
     floor: Array
-    """(k,) smallest rate that tells a direction, m/s or rad/s"""
+    """(k,) smallest rate that determines a direction, m/s or rad/s"""
     law: Law = Law.CAPPED
     settings: PhaseSettings = _PHASES
     account: AccountSettings = ACCOUNT
@@ -93,7 +93,7 @@ class Attractor:
         """The force (k,) in N or N·m for the error of this tick (k,), and the next state.
 
         Args:
-            profile: in force from now on; another one than in the last tick is paid for by the account.
+            profile: valid from now on; the account pays for a change from the last tick.
             error: x̃ (k,), m or rad.
             state: of the last tick.
             motion: what moved the error; None: the robot alone, against the force of the last tick.
@@ -107,7 +107,7 @@ class Attractor:
         return force, replace(state, force=force, account=account)
 
     def wish(self, profile: ForceProfile, error: Array, state: AttractorState) -> tuple[Array, AttractorState]:
-        """What phases, law and blend want, before the account has its say. Arguments and results as of `step`."""
+        """The force of phases, law and blend, before the account limits it. Arguments and results as of `step`."""
         converged = state.converging
         state = self._switch(error, self._sense(error, state))
         law = self.law_force(profile, error, state)
@@ -119,7 +119,7 @@ class Attractor:
         return force, replace(state, errors=(error, *state.errors[:2]), force=force, gap=gap, blend=blend)
 
     def threshold(self, state: AttractorState) -> Array:
-        """ε (k,), m/s or rad/s: rates of |x̃| below it do not tell the direction."""
+        """ε (k,), m/s or rad/s: rates of |x̃| below it do not determine the direction."""
         return np.maximum(self.floor, 3.0 * self.settings.noise_to_rate(self.period) * np.sqrt(state.noise))
 
     def law_force(self, profile: ForceProfile, error: Array, state: AttractorState) -> Array:

@@ -1,4 +1,4 @@
-"""Which axes of a task a controller moves, on which it presses, and which it leaves alone (Mason 1981; Khatib 1987)."""
+"""Motion, force and free axes of a task (Mason 1981; Khatib 1987)."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ class Selection(NamedTuple):
     force: Flags
     """(k,) which axes press; the others move"""
     wrench: Array
-    """(k,) what is asked of them, N and N·m"""
+    """(k,) desired wrench along them, N and N·m"""
 
 
 def selection_of(task: TaskReference, *, touches: bool, presses: bool) -> Selection | None:
-    """The axes of a task; None where all of them move and the world's will do.
+    """The axes of a task; None where all axes are motion axes; world axes are then sufficient.
 
-    An axis on which a force is asked for moves until there is contact, and presses from then on; one on which 0 N are
-    asked for gives way at once.
+    An axis on which a force is asked for moves until there is contact, and presses from then on; an axis with a desired
+    force of 0 N is a force axis at once.
 
     Args:
-        task: with its modes, or with a wrench that says them.
+        task: with its modes, or with a wrench that implies them.
         touches: whether there is contact.
         presses: whether the controller regulates forces; if not, only free axes count.
     """

@@ -1,4 +1,4 @@
-"""Typed configurations of the controllers: what each number means, its unit, its range and a sensible default."""
+"""Typed configurations of the controllers: each number with its meaning, unit, range and default."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class FrameTaskConfig(ControllerConfig):
     rotation: RotationConfig | None = Field(
         default=None, description="impedance of the orientation; none leaves it free"
     )
-    profile: Shape = Field(default=Shape.EXPONENTIAL, description="how the force bends towards F_max")
+    profile: Shape = Field(default=Shape.EXPONENTIAL, description="shape of the bend of the force towards F_max")
 
     @model_validator(mode="after")
     def _is_possible(self) -> Self:
@@ -103,14 +103,14 @@ class StackConfig(ControllerConfig):
     joint_damping: float = quantity(
         0.0,
         "N·m s/rad",
-        "of every joint, added by the controller; what a plain spring needs to come to rest",
+        "of every joint, added by the controller; a plain spring needs it to come to rest",
         shown=(0.0, 20.0),
         ge=0.0,
     )
     force_damping: float = quantity(
         0.0,
         "N·s/m",
-        "of a frame's motion along the force that is asked of it; damps the contact and not the path",
+        "of a frame's motion along its desired force; damps the contact and not the path",
         shown=(0.0, 1000.0),
         ge=0.0,
     )
@@ -138,7 +138,7 @@ class StackConfig(ControllerConfig):
 class OperationalSpaceConfig(ControllerConfig):
     """Khatib's operational-space controller with a dynamically consistent posture."""
 
-    frame: str = Field(default="flange", description="frame of the robot that follows the first task")
+    frame: str = Field(default="flange", description="controlled frame; it follows the first task")
     stiffness: float = quantity(
         OperationalSpace.stiffness, "1/s²", "acceleration per position error", shown=(0.0, 4000.0), ge=0.0
     )
@@ -146,7 +146,7 @@ class OperationalSpaceConfig(ControllerConfig):
     posture_stiffness: float = quantity(
         OperationalSpace.posture_stiffness,
         "1/s²",
-        "joint acceleration per joint error, in what the task leaves free",
+        "joint acceleration per joint error, in the null space of the task",
         shown=(0.0, 400.0),
         ge=0.0,
     )
@@ -175,7 +175,7 @@ def _spread(value: PerAxis) -> Array:
 
 
 def _three(bend: PerAxis | None, group: TranslationConfig | RotationConfig) -> Array:
-    """x_0 of a group, derived where it is left open (the other group may have given its own)."""
+    """x_0 of one group, derived where it is not given (the other group may have its own)."""
     if bend is not None:
         return _spread(bend)
     stiffness, force_max = _spread(group.stiffness), _spread(group.force_max)

@@ -1,18 +1,17 @@
-"""The energy ledger of a stack of impedances: which channels it has, and what they mean.
+"""The energy ledger of a stack of impedances: its channels and their meaning.
 
-Every tick books, for each axis, the work h·Δx̃ of the force that was held during the last period. From it follow
+Every tick adds, for each axis, the work h·Δx̃ of the force that was held during the last period. From it follow
 
     supplied   by the moving references     Σ h·Δx_d     (for a rotation Σ (J_l⁻ᵀ h)·Δθ_d)
     delivered  to the robot                 supplied − Σ h·Δx̃
     tuning     by changes of the parameters storage after minus before, at the same error
     stored     in the springs               Σ E(x̃)
     dissipated by the attractors            Σ (∫h dx̃ + tuning − (E(x̃) − E(x̃_0)))
-    clamped    kept back by torque limits   Σ (wanted − sent)·Δq
+    clamped    held back by torque limits   Σ (wanted − sent)·Δq
     spendable  by the accounts, next period Σ of what each axis may spend; no energy of the balance below
 
 so that supplied + tuning = delivered + dissipated + (stored − stored at the start) at every tick. What an axis
-dissipates is its storage margin: a passive law keeps it from falling below zero, but for the work that sampling lets
-through.
+dissipates is its storage margin: a passive law keeps it at or above zero, except for the leakage of sampling.
 """
 
 from __future__ import annotations
@@ -92,7 +91,7 @@ def require_length(table: Mapping[str, LedgerChannel], numbers: int) -> None:
 
 
 class Diagnostics(Mapping[str, "float | Array"]):
-    """Channels of one tick, read from one array when somebody asks: making it costs no more than a pointer."""
+    """Channels of one tick, read from one array on access; to create it costs no more than a pointer."""
 
     __slots__ = ("_table", "_values")
 

@@ -36,7 +36,7 @@ class FractalImpedance(Controller[StackState]):
 
     @property
     def needs(self) -> Needs:
-        """What its stack of one wants to be told."""
+        """Signals that its stack needs."""
         return self.stack.needs
 
     @property

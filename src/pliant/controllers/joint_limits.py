@@ -1,4 +1,4 @@
-"""Springs that keep the joints off their limits, round any controller."""
+"""Springs at the joint limits, around any controller."""
 
 from __future__ import annotations
 
@@ -24,7 +24,11 @@ class JointLimitsConfig(Config):
     """A spring at each end of each joint's range."""
 
     margin: float = quantity(
-        math.radians(10.0), "rad", "how far before a position limit its spring begins", shown=(0.01, 0.5), gt=0.0
+        math.radians(10.0),
+        "rad",
+        "distance from a position limit at which its spring begins",
+        shown=(0.01, 0.5),
+        gt=0.0,
     )
     share: float = quantity(
         0.5, "1", "torque of the spring at the limit and beyond, as a share of the joint's torque limit", gt=0.0, le=1.0
@@ -33,13 +37,13 @@ class JointLimitsConfig(Config):
 
 @dataclass(frozen=True, slots=True)
 class JointLimitsState:
-    """State of the controller inside, and the springs' account."""
+    """State of the inner controller, and the springs' account."""
 
     inner: Any
     q: Array
     """(n,) joint positions of the last tick, rad"""
     step: Array
-    """(n,) how far the joints went in the tick before, rad"""
+    """(n,) joint motion in the last period, rad"""
     sent: Array
     """(n,) torque of the springs that was sent in the last tick, N·m"""
     account: Array
@@ -52,11 +56,12 @@ class JointLimits(Controller[JointLimitsState]):
 
     A spring that is sampled gives out more than it took in. Each joint therefore keeps an account of Σ −τ_sent·Δq, and
     on the way out its torque is at most what the account holds, over a step as long as the last one and the change to
-    it. So a visit to the margin takes energy out of the robot; where a step is longer than that prediction, it may give
-    out the torque times the difference. A joint that starts within its margin begins with the energy of its spring.
+    it. So entering and leaving the margin takes energy out of the robot; where a step is longer than predicted, at most
+    the torque times the difference is given out. A joint that starts within its margin begins with the energy of its
+    spring.
 
-    The springs come on top of the controller's own torque, and only they yield where the sum exceeds a torque limit.
-    The channel `energy/joint_limits` is the sum of the accounts, `joint_limits/torque` what the springs sent.
+    The springs are added to the controller's own torque, and only they are reduced where the sum exceeds a torque
+    limit. The channel `energy/joint_limits` is the sum of the accounts, `joint_limits/torque` what the springs sent.
 
     Args:
         inner: any controller.
@@ -130,5 +135,5 @@ class JointLimits(Controller[JointLimitsState]):
 
 
 def with_joint_limits(controller: Controller[Any], robot: Robot, config: JointLimitsConfig | None) -> Controller[Any]:
-    """The controller with springs at the joints' limits; the controller itself where there is no configuration."""
+    """The controller with springs at the joint limits; the controller itself without a configuration."""
     return controller if config is None else JointLimits(controller, robot, config)

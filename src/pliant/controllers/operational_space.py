@@ -1,4 +1,4 @@
-"""The operational-space controller: a baseline that knows the dynamics and inverts them."""
+"""The operational-space controller: a baseline that inverts the model's dynamics."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from pliant.spatial import Array, all_finite, log3
 
 Compensation = Literal["none", "coriolis", "gravity+coriolis"]
 
-_LONGEST_PERIOD = 0.02  # s; after a pause the integral goes on from where it was
+_LONGEST_PERIOD = 0.02  # s; after a longer pause the integral is not advanced
 _MOST = (20.0, 2.0)  # N and N·m, of the integral
 
 
 @dataclass(frozen=True)
 class OperationalSpaceState:
-    """What the force integral has gathered; without one the law has no memory."""
+    """State of the force integral; without it the law has no state."""
 
     data: pin.Data
     """scratch space of the dynamics"""
@@ -45,9 +45,9 @@ class OperationalSpace(Controller[OperationalSpaceState]):
     with Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹, J̄ = M⁻¹ Jᵀ Λ, and ẍ* = a_d + 2 ζ √k (v_d − J v) + k x̃. J has 6 rows where the
     reference has a rotation, otherwise 3. The posture is `Reference.posture`, or the robot's home.
 
-    With `force_integral` it presses, too: in the axes of `TaskReference.modes` (else those of its wrench) motion axes
-    keep ẍ*, force axes have 2 ζ √k (v_d − J v) alone and −(F_d + k_i ∫(F_d − F)) beside it as long as there is contact;
-    until then they move. Free axes drop out of J.
+    With `force_integral` it also regulates force: in the axes of `TaskReference.modes` (else those of its wrench)
+    motion axes keep ẍ*, force axes have 2 ζ √k (v_d − J v) alone and −(F_d + k_i ∫(F_d − F)) beside it as long as there
+    is contact; until then they move. Free axes drop out of J.
 
     Raises:
         RobotError: the robot lacks the frame.
@@ -83,7 +83,7 @@ class OperationalSpace(Controller[OperationalSpaceState]):
 
     @property
     def needs(self) -> Needs:
-        """A posture, for what the task leaves free; the contact wrench where it presses."""
+        """A posture for the null space of the task; the contact wrench where it regulates a force."""
         return Needs(posture=True, wrench=self.force_integral > 0.0)
 
     @property
@@ -151,7 +151,7 @@ class OperationalSpace(Controller[OperationalSpaceState]):
     ) -> tuple[Array, OperationalSpaceState]:
         """F_d + k_i ∫(F_d − F) (k,) along the axes that press, and the state with the integral.
 
-        It starts anew where none presses, and holds without a usable signal.
+        It is reset where no axis presses, and held without a usable signal.
         """
         rows = selection.into.shape[1]
         if not selection.force.any():
@@ -176,7 +176,8 @@ class OperationalSpace(Controller[OperationalSpaceState]):
         raise ConfigError(f"the reference has no task for frame {self.frame!r}; {known}")
 
     def _kinematics(self, q: Array, target: TaskReference, data: pin.Data) -> tuple[Array, Array, Array]:
-        """J (rows, n), x̃ (rows,) and J̇ v (rows,), with 3 or 6 rows. Wants the kinematics of zero acceleration."""
+        """J (rows, n), x̃ (rows,) and J̇ v (rows,), with 3 or 6 rows. Needs the kinematics computed with zero
+        acceleration."""
         frame, axes = self.robot.frame_id(self.frame), pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
         J = pin.computeFrameJacobian(self.robot.model, data, q, frame, axes)
         pose = pin.updateFramePlacement(self.robot.model, data, frame)

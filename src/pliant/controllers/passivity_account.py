@@ -1,11 +1,12 @@
-"""The passivity account of a sampled axis: what its force took in beyond what is stored, and what it may spend of that.
+"""The passivity account of a sampled axis: the energy that its force absorbed beyond what is stored, and how much of it
+may be spent.
 
 Over a period the held force h takes in h·d, d the motion of the error, while the profile stores E(x̃ + d) − E(x̃).
-The difference is booked at the next tick. Sampling, blending, clamps, bounds on torque steps and changes of the tuning
-are paid from it. Where it holds nothing, the next force may not let out more than the profile gives back over the step
-that is expected. The idea is the passivity observer and controller of Hannaford and Ryu 2002.
+The difference is added to the account at the next tick. Sampling, blending, clamps, bounds on torque steps and changes
+of the tuning are paid from it. If the account is empty, the next force may not release more energy than the profile
+does over the expected step. The idea is the passivity observer and controller of Hannaford and Ryu 2002.
 
-This module is the readable form; `cpp/impedance/account.hpp` is what the stack runs.
+This module is the reference implementation in Python; the stack runs `cpp/impedance/account.hpp`.
 """
 
 from __future__ import annotations
@@ -21,17 +22,17 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True)
 class AccountSettings:
-    """How the account books and spends. The numbers were found by the search of `benchmarks/passivity_search.py`."""
+    """Parameters of the account. The numbers were found by the search of `benchmarks/passivity_search.py`."""
 
     deposit: float = 0.5
-    """share that is kept of an income beyond the debt"""
+    """share of an income beyond the debt that is kept"""
     ceiling: float = 0.01
-    """J, largest balance: what a past that dissipated can be drawn on later"""
+    """J, largest balance: how much dissipated energy can be spent later"""
     savings: float = 0.3
     """J, most of what is beyond the ceiling that is put aside: it pays for what comes from outside, changes of the
     tuning and torque that was not sent, never for the axis' own force"""
     spend: float = 0.25
-    """share of the balance, beyond the cost of a reversal, that one period may spend"""
+    """share of the balance, beyond the cost of a reversal, that may be spent in one period"""
     damping: float = 3.0
     """largest force that repays a debt, as a multiple of the step of a period times the largest recent slope of the
     profile over a step: a knee costs by its own slope, not by K_0"""
@@ -42,19 +43,19 @@ class AccountSettings:
     speed_angular: float = 1.4
     """rad/s"""
     kick: float = 0.3
-    """m/s by which one period may change the speed without notice: 300 m/s² at 1 kHz. A force that a motion back by so
-    much would draw on is held to what is left"""
+    """m/s, change of the speed that must be expected within one period: 300 m/s² at 1 kHz. The force is limited so that
+    a motion back by this step stays within the balance"""
     kick_angular: float = 0.6
     """rad/s"""
     trickle: float = 0.004
-    """W that an overdrawn axis may always let out, so that it never goes quite limp"""
+    """W that an overdrawn axis may always release, so that its force does not vanish"""
     trust: float = 0.125
-    """share per period with which it is learned how right the expected steps are: debts are repaid by as much, for
-    motions that turn within a few periods would take from a force that repays"""
+    """filter coefficient per period of the quality of the prediction; debts are repaid in proportion to it, because
+    motions that reverse within a few periods would gain from a force that repays"""
     peak_time: float = 0.1
-    """s for which the largest recent step and slope count as what may come next"""
+    """s for which the largest recent step and slope are used as bounds of the next ones"""
     surprise_time: float = 1.0
-    """s for which a step that came out otherwise than expected counts as what may come again"""
+    """s for which the largest recent prediction error is used as bound of the next one"""
     forgiveness_time: float = 0.5
     """s over which debt beyond the tolerance is written off"""
 
@@ -65,15 +66,16 @@ class AccountSettings:
         return np.array([*levels, *speeds, self.trickle, self.trust, *self.rates(period)])
 
     def rates(self, period: float) -> tuple[float, float, float]:
-        """Shares per period of s: kept of the largest step and of the largest surprise, written off of a debt."""
+        """Shares per period of s: decay of the largest step and of the largest prediction error, write-off of a
+        debt."""
         keep, memory = math.exp(-period / self.peak_time), math.exp(-period / self.surprise_time)
         return keep, memory, -math.expm1(-period / self.forgiveness_time)
 
 
 STEPS = 6
-"""so many periods back it is looked for a step that comes again"""
+"""number of past periods in which a repeated step is looked for"""
 SMALL_STEP = 1e-6
-"""m or rad: below it the difference of energies is rounding"""
+"""m or rad; below it the difference of energies is rounding error"""
 ACCOUNT = AccountSettings()
 """the default"""
 
@@ -93,7 +95,7 @@ class AccountState:
     steps: Array
     """(STEPS, k) by which the error moved in the last periods, newest first, m or rad; without targets that jump"""
     misses: Array
-    """(STEPS, k) recent mean square of what each guess of a step was off"""
+    """(STEPS, k) recent mean square error of each prediction of a step"""
     target: Array
     """by which the target moved the error in the last period, m or rad"""
     peak: Array
@@ -122,14 +124,14 @@ class ErrorMotion:
 
 @dataclass(frozen=True)
 class Account:
-    """Books and bounds the force of `k` axes at a fixed period. Stateless: the state goes in and comes out."""
+    """Books and bounds the force of `k` axes at a fixed period. Stateless: the state is passed in and returned."""
 
     period: float
     """s"""
     speed: Array
     """(k,) m/s or rad/s, for the tolerance"""
     kick: Array
-    """(k,) m/s or rad/s, what one period may change the speed by"""
+    """(k,) m/s or rad/s, largest change of speed in one period"""
     settings: AccountSettings = ACCOUNT
 
     def init(self, profile: ForceProfile, error: Array) -> AccountState:
@@ -139,7 +141,7 @@ class Account:
         return AccountState(profile, zero, zero, profile.energy(error), rows, rows, *(zero,) * 7)
 
     def book(self, state: AccountState, last: Array, force: Array, error: Array, motion: ErrorMotion) -> AccountState:
-        """Books a period in which the error went from `last` to `error` (k,) and h = `force` (k,) was asked for.
+        """Adds a period in which the error went from `last` to `error` (k,) and h = `force` (k,) was applied.
 
         A target that moves the error by r supplies h·r, or what the profile then stores more, whichever is larger.
         """
@@ -154,9 +156,8 @@ class Account:
         return self._learn(replace(state, stored=stored, target=target), step)
 
     def restate(self, state: AccountState, profile: ForceProfile, error: Array) -> AccountState:
-        """A change of the tuning: what is stored more is paid as far as savings and balance go.
-
-        The rest was supplied by who made the change, and leaves no debt. Args: error (k,) m or rad.
+        """A change of the tuning: the increase of the stored energy is paid from savings and balance. The rest is
+        supplied by whoever made the change, and leaves no debt. Args: error (k,) m or rad.
         """
         stored = profile.energy(error)
         income = np.maximum(state.stored - stored, -state.savings - np.maximum(state.balance, 0.0))
@@ -167,7 +168,7 @@ class Account:
         """The force (k,) nearest to the wanted one that the account allows, and the next state.
 
         Args:
-            state: after the last period was booked.
+            state: after the last period was added.
             error: (k,) m or rad.
             wanted: (k,) force of the law, N or N·m.
         """
@@ -193,7 +194,7 @@ class Account:
         return self._bounded_by_rest(state, tolerance, force), state
 
     def _learn(self, state: AccountState, step: Array) -> AccountState:
-        """What a step (k,) says of the guesses that were made of it."""
+        """Updates the errors of the predictions with a step (k,)."""
         hit, trust = state.expected * step, self.settings.trust
         misses = state.misses + trust * ((step - guesses(state)) ** 2 - state.misses)
         right, size = state.right + trust * (hit - state.right), state.size + trust * (np.abs(hit) - state.size)
@@ -202,9 +203,8 @@ class Account:
         return replace(state, steps=steps, misses=misses, right=right, size=size, surprise=surprise)
 
     def _bounded_by_rest(self, state: AccountState, tolerance: Array, force: Array) -> Array:
-        """However the next step comes out, within what surprised of late, what leaves (k,) is left.
-
-        After a debt the largest recent step counts, whichever way it went.
+        """Limits the force so that, for every next step within the recent prediction errors, the energy that leaves is
+        covered by the balance (k,). After a debt the largest recent step in either direction counts.
         """
         left, least = state.stored + state.balance + tolerance, self.settings.trickle * self.period
         forward = np.where(force > 0.0, state.expected, -state.expected)
@@ -217,7 +217,8 @@ class Account:
         return np.clip(force, -bound, bound)
 
     def _add(self, state: AccountState, income: Array) -> AccountState:
-        """An income pays the debt first; of the rest a share is kept, and what is beyond the ceiling put aside."""
+        """An income pays the debt first; a share of the rest is kept, and what exceeds the ceiling goes to the
+        savings."""
         debt = np.minimum(np.maximum(-state.balance, 0.0), np.maximum(income, 0.0))
         kept = np.where(income > 0.0, debt + self.settings.deposit * (income - debt), income)
         beyond = np.maximum(state.balance + kept - self.settings.ceiling, 0.0)
@@ -231,13 +232,14 @@ class Account:
 
 
 def guesses(state: AccountState) -> Array:
-    """(STEPS, k) what the next step could be: the last change goes on, or what came 2, 3 … periods before comes."""
+    """(STEPS, k) predictions of the next step: the last change continues, or the step of 2, 3 … periods ago is
+    repeated."""
     last, before = state.steps[:2]
     size = np.maximum(np.abs(last), np.abs(before))
     return np.concatenate([np.clip(2.0 * last - before, -size, size)[None], state.steps[1:]])
 
 
 def likely_step(state: AccountState) -> Array:
-    """(k,) the step that is expected: a repetition is believed only where it was the better guess by far."""
+    """(k,) the expected step: a repetition is used only where it was by far the better prediction."""
     misses = np.concatenate([0.5 * state.misses[:1], state.misses[1:]])
     return np.take_along_axis(guesses(state), np.argmin(misses, axis=0)[None], axis=0)[0]

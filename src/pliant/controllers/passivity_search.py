@@ -1,9 +1,8 @@
 """A search for motions that draw energy from one sampled axis, whose target rests.
 
 Histories are cycles that repeat for a while: out in two pieces, back in one, each at its own speed, before them a few
-larger swings that dissipate and fill what could be drawn on later. Corners are rounded to a bounded acceleration. The
-best of a round are varied in the next. The axis is the compiled one of the stack; what is found is a lower bound of the
-worst case.
+larger swings that dissipate energy and fill the account. Corners are rounded to a bounded acceleration. The best of a
+round are varied in the next. The axis is the compiled one of the stack; the result is a lower bound of the worst case.
 """
 
 from __future__ import annotations
@@ -25,12 +24,12 @@ SECONDS = 1.2
 """length of a history, s"""
 _PHASES = PhaseSettings()
 KEPT = 12
-"""histories that a round hands on, for each quantity"""
+"""histories that a round keeps for the next one, for each quantity"""
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """How an axis is sampled, and how violently it may be moved."""
+    """Sampling of an axis, and bounds of its motion."""
 
     period: float
     """s"""
@@ -46,7 +45,7 @@ class Sampling:
 
 @dataclass(frozen=True)
 class Draw:
-    """The most energy that was drawn, J, and how often it was tried."""
+    """The most energy that was generated, J, and the number of trials."""
 
     cycle: float
     """per cycle, mean over those after the first"""
@@ -60,7 +59,7 @@ class Draw:
 
 
 def forces(profile: ForceProfile, sampling: Sampling, errors: Array) -> tuple[Array, Array]:
-    """What one axis does along given errors.
+    """Simulates one axis along given errors.
 
     Args:
         profile: of one axis.
@@ -108,7 +107,7 @@ def total_drawn(profile: ForceProfile, errors: Array, held: Array) -> Array:
 
 
 def search(profile: ForceProfile, sampling: Sampling, *, histories: int = 800, rounds: int = 4, seed: int = 0) -> Draw:
-    """The most energy that cycles draw from an axis.
+    """The most energy that cycles extract from an axis.
 
     Args:
         profile: of one axis.
@@ -157,7 +156,7 @@ def _varied(rng: np.random.Generator, sampling: Sampling, pools: Mapping[str, tu
 
 
 def _evaluate(profile: ForceProfile, sampling: Sampling, shapes: Array) -> tuple[dict[str, Array], float, int]:
-    """Per history the energies drawn, the largest share of F_max, and the number of whole cycles in all."""
+    """Per history: the energies extracted, the largest share of F_max, and the number of whole cycles."""
     errors, cycle, lead = _errors(shapes, sampling)
     held, _ = forces(profile, sampling, errors)
     out = energy_out(errors, held)

@@ -12,8 +12,8 @@ class PhaseSettings(Config):
     """How an axis decides between divergence and convergence. The defaults serve noise-free and noisy robots alike."""
 
     rate_cutoff: float = quantity(80.0, "Hz", "low-pass on the rate of the error", gt=0.0)
-    rate_floor: float = quantity(0.5e-3, "m/s", "rates below it tell no direction", gt=0.0)
-    rate_floor_angular: float = quantity(0.5e-3, "rad/s", "rates below it tell no direction", gt=0.0)
+    rate_floor: float = quantity(0.5e-3, "m/s", "rates below it do not determine a direction", gt=0.0)
+    rate_floor_angular: float = quantity(0.5e-3, "rad/s", "rates below it do not determine a direction", gt=0.0)
     noise_time: float = quantity(
         0.2,
         "s",
@@ -21,13 +21,13 @@ class PhaseSettings(Config):
         gt=0.0,
     )
     hold_limit: float = quantity(
-        0.030, "s", "how long a phase is held while the rate tells nothing; then the axis diverges", ge=0.0
+        0.030, "s", "how long a phase is held while the rate is below the threshold; then the axis diverges", ge=0.0
     )
     blend_time: float = quantity(
         0.008,
         "s",
-        "time over which the force steps up where a convergence ends; 0: at once. Much shorter than a swing it costs no"
-        " damping, and the joints feel no jolt",
+        "time over which the force steps up where a convergence ends; 0: at once. If it is much"
+        " shorter than an oscillation, it costs no damping and avoids a step of the joint torques",
         ge=0.0,
     )
 

@@ -15,7 +15,7 @@ STIFF_STACK = _stack(
     RotationConfig(stiffness=300.0, linear_range=0.25, range=0.63, force_max=100.0),
     TranslationConfig(stiffness=5000.0, linear_range=0.01, range=0.02, force_max=50.0),
 )
-"""for 1 kHz: holds an arm against its own weight within millimetres, without a model of it"""
+"""for 1 kHz: holds an arm against its own weight within millimetres, without a dynamic model"""
 
 SOFT_STACK = _stack(
     TranslationConfig(stiffness=2500.0, linear_range=0.03, range=0.06, force_max=100.0),

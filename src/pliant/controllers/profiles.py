@@ -14,7 +14,7 @@ from pliant.spatial import Array
 STEEPNESS = 20.0
 """S of the exponential profile: how many characteristic lengths lie between x_0 and x_b ([Stack] sec. II-C)"""
 LINEAR_SHARE = 0.95
-"""share of x_b, and of F_max, at which the linear part ends where the user does not say ([HapFIC] sec. II-C)"""
+"""share of x_b, and of F_max, at which the linear part ends by default ([HapFIC] sec. II-C)"""
 
 _LN2 = float(np.log(2.0))
 
@@ -44,7 +44,7 @@ class ForceProfile:
 
     @staticmethod
     def of(tuning: ImpedanceTuning, shape: Shape = Shape.EXPONENTIAL) -> ForceProfile:
-        """The profile of a tuning; derives x_0 where the tuning leaves it open."""
+        """The profile of a tuning; derives x_0 where the tuning does not give it."""
         return ForceProfile(shape, tuning.stiffness, tuning.force_max, tuning.range, linear_range(tuning))
 
     @property

@@ -37,7 +37,7 @@ def build_operational_space(robot: Robot, config: OperationalSpaceConfig, period
 
 
 def advise_stack(robot: Robot, config: StackConfig, period: float) -> tuple[str, ...]:
-    """What is unsafe about a stack on a robot at its home, sampled at a period in s."""
+    """Warnings about a stack on a robot at its home, sampled at a period in s."""
     found: list[str] = []
     for task in config.frame_tasks():
         inertia = smallest_inertia(robot, task.frame)[: task.axes]
@@ -72,7 +72,7 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
             "stack", Law.CAPPED, "stack of fractal impedances with the capped convergence law and a passivity account"
         ),
         _stack("stack-paper", Law.STACK_PRINTED, "the same with the law of Tiseo et al. 2020, Algorithm 1, as printed"),
-        _stack("stack-corrected", Law.STACK_CORRECTED, "the same with that law's sign turned round"),
+        _stack("stack-corrected", Law.STACK_CORRECTED, "the same with the sign of that law reversed"),
         _stack("stack-hapfic", Law.HAPFIC, "the same with the law of Tiseo et al. 2021, eq. 1, as printed"),
         _stack(
             "spring",

@@ -26,12 +26,12 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True, slots=True)
 class StackState:
-    """State between two ticks: phases, turning points, filters and ledger in one array, and the tunings in force."""
+    """State between two ticks: phases, turning points, filters and ledger in one array, and the active tunings."""
 
     memory: Array
     tunings: tuple[ImpedanceTuning | None, ...]
     free: tuple[tuple[bool, ...], ...]
-    """of each task, which axes are left alone; empty: none"""
+    """of each task, which axes are free; empty: none"""
     workspace: _Workspace
     """scratch memory of the kinematics; nothing in it outlives a step"""
 
@@ -49,7 +49,7 @@ class _Workspace:
 
 
 def needs_of_law(law: Law) -> Needs:
-    """What a stack with a law wants to be told."""
+    """Signals that a stack with a law needs."""
     return Needs(calm=law is Law.CAPPED)
 
 
@@ -58,13 +58,13 @@ class Stack(Controller[StackState]):
 
     It needs no inverse, no projection and, without gravity compensation, no inertia. Orientation errors are
     e = log(R_d Rᵀ); the moment is m = J_l⁻¹(e) h, so that m·ω = −h·ė with unequal gains, too.
-    Where a moment would exceed its F_max, the three shrink together. Each axis of the capped law pays for what
-    sampling, clamps and changes of its tuning let out, see `passivity_account`.
+    Where a moment would exceed its F_max, the three shrink together. Each axis of the capped law accounts for the
+    energy that sampling, clamps and changes of its tuning release, see `passivity_account`.
 
     Forces come from position errors alone: `TaskReference.velocity` and `.acceleration` are not used, `.wrench` for the
     direction of `force_damping` alone. Axes are the world's, or those of `TaskReference.modes`: a "free" one gives no
-    force; where they turn, the axes start anew (`cpp/impedance/task.hpp`). A task whose reference has no rotation
-    leaves the orientation free for as long.
+    force; where they turn, the axes start anew (`cpp/impedance/task.hpp`). While the reference of a task has no
+    rotation, its orientation is free.
 
     `Command.diagnostics` holds the energy ledger and the state of every axis; `channels` says what is in it.
     """
@@ -88,8 +88,8 @@ class Stack(Controller[StackState]):
             period: s between two steps.
             law: force on the way back; `capped` unless you compare.
             phases: thresholds of the phase logic.
-            joint_damping: N·m·s/rad, times the estimated joint velocity, against it; the attractor needs none.
-            force_damping: N·s/m, times the frame's velocity along the force that its reference asks for, against it.
+            joint_damping: N·m·s/rad, damping on the estimated joint velocity; the attractor needs none.
+            force_damping: N·s/m, damping on the frame's velocity along the desired force of its reference.
             gravity_compensation: adds the model's gravity torque; leave it off where the robot compensates itself.
 
         Raises:
@@ -131,7 +131,8 @@ class Stack(Controller[StackState]):
 
     @property
     def needs(self) -> Needs:
-        """With the passivity account: positions without white noise, which it would pay for until an axis goes limp."""
+        """With the passivity account: positions without white noise, because noise would empty the account and weaken
+        the axis."""
         return needs_of_law(self.law)
 
     @property
@@ -177,7 +178,7 @@ class Stack(Controller[StackState]):
         return command, StackState(memory, tunings, free, work)
 
     def _bias(self, estimate: Estimate, reference: Reference, data: pin.Data) -> Array | None:
-        """(n,) N·m beside the tasks; None for nothing."""
+        """(n,) N·m in addition to the tasks; None for none."""
         gravity = (
             pin.computeGeneralizedGravity(self.robot.model, data, estimate.q) if self.gravity_compensation else None
         )
@@ -189,7 +190,7 @@ class Stack(Controller[StackState]):
         return damping if gravity is None else gravity + damping
 
     def _along_force(self, reference: Reference, place: int, frame: int, data: pin.Data, v: Array) -> Array:
-        """(n,) Jᵀ n nᵀ J v, n the direction of the force that is asked for; zero without one."""
+        """(n,) Jᵀ n nᵀ J v, n the direction of the desired force; zero without one."""
         force = target_of(reference, place, self.tasks[place].frame).wrench[:3]
         size = float(np.linalg.norm(force))
         if size == 0.0:
@@ -199,7 +200,7 @@ class Stack(Controller[StackState]):
         return along * float(along @ v)
 
     def kept_back(self, state: StackState, torque: Array) -> StackState:
-        """Books that part of the last torque, (n,) N·m, was not sent: the accounts of the tasks bear what it costs."""
+        """Adds to the accounts that part of the last torque, (n,) N·m, was not sent."""
         memory, start = state.memory.copy(), self._core.kept_back
         memory[start : start + self.robot.n] += torque
         return replace(state, memory=memory)
@@ -207,7 +208,7 @@ class Stack(Controller[StackState]):
     def _tunings(
         self, targets: Sequence[TaskReference], last: StackState
     ) -> tuple[tuple[ImpedanceTuning | None, ...], tuple[tuple[bool, ...], ...]]:
-        """The tunings, those of `last` themselves if none changed, and the axes that are left alone."""
+        """The tunings, those of `last` themselves if none changed, and the free axes."""
         tunings = last.tunings
         for i, (task, target) in enumerate(zip(self.tasks, targets, strict=True)):
             tuning = target.tuning or task.tuning

@@ -1,4 +1,4 @@
-"""What a stack is made of and told: checks of its tasks, the target of each, which joints move its frame."""
+"""Inputs of a stack: checks of its tasks, the target of each, which joints move its frame."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def loosened(tuning: ImpedanceTuning, free: tuple[bool, ...]) -> ImpedanceTuning
 
 
 def free_axes(task: TaskReference) -> tuple[bool, ...]:
-    """(6,) which axes of a task are left alone; empty: none."""
+    """(6,) which axes of a task are free; empty: none."""
     if task.modes is None or "free" not in task.modes.modes:
         return ()
     free = task.modes.having("free")

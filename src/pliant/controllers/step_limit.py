@@ -1,4 +1,4 @@
-"""A bound on how fast torques may change, round any controller."""
+"""A bound on the rate of change of the torques, around any controller."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array
 
 DEFAULT_SHARE = 0.14
-"""of a joint's torque limit per period: the change that no controller need exceed in use"""
+"""share of a joint's torque limit per period, a change that controllers do not need to exceed in normal use"""
 TorqueStep = Annotated[
     float | None,
     quantity(
@@ -30,14 +30,14 @@ TorqueStep = Annotated[
 ]
 """a key of configurations"""
 SPENDABLE = "energy/spendable"
-"""channel of a controller that books its energy: J that a layer outside may spend in the next period"""
+"""channel of a controller that accounts for its energy: J that an outer wrapper may spend in the next period"""
 CHANNELS: Mapping[str, HasUnit] = {"energy/step_limit": ChannelUnit("J"), "step_limit/exceeded": ChannelUnit("1")}
 """name → unit of what is added to the inner controller's channels"""
 
 
 @dataclass(frozen=True, slots=True)
 class StepLimitState:
-    """State of the controller inside, and the book of what the bound did."""
+    """State of the inner controller, and the energy of the bound."""
 
     inner: Any
     q: Array
@@ -47,21 +47,21 @@ class StepLimitState:
     held_back: Array
     """(n,) torque that the bound took away in the last tick, N·m"""
     energy: float
-    """J that the bound kept from the robot since the start (negative: that it let through)"""
+    """J that the bound withheld from the robot since the start (negative: released to it)"""
 
 
 class StepLimit(Controller[StepLimitState]):
     """Bounds the change of each joint's torque from one period to the next.
 
-    Gears, joint-torque loops and most robots' own safety want torques that do not jump; an attractor that switches
-    its phase makes them jump, and so does a stiffness that changes under a standing error. What the bound takes away is
-    part of `Command.clamped`; its work is booked in `energy/step_limit`, and the controller inside is told
+    Gears, joint-torque loops and the safety functions of most robots need torques without jumps; an attractor that
+    switches its phase makes them jump, and so does a change of stiffness at a constant error. What the bound takes away
+    is part of `Command.clamped`; its work is in `energy/step_limit`, and the inner controller is informed
     (`Controller.kept_back`).
 
-    A torque that lags behind can let energy out that the controller did not mean to give. Where the controller says
-    what may be spent (channel `energy/spendable`), and the lag would cost more over a step like the last one, the
-    torque goes further than the bound: passivity comes first. `step_limit/exceeded` says by how much, as a share of
-    the bound (0: held).
+    A torque that lags behind can release energy that the controller did not intend. Where the controller gives the
+    energy that may be spent (channel `energy/spendable`), and the lag would cost more over a step like the last one,
+    the torque exceeds the bound: passivity has priority. `step_limit/exceeded` says by how much, as a share of the
+    bound (0: held).
 
     Args:
         inner: the controller whose torques are bounded.
@@ -93,7 +93,8 @@ class StepLimit(Controller[StepLimitState]):
         return self.inner.regulates_force
 
     def init(self, estimate: Estimate) -> StepLimitState:
-        """The first torque may differ by a step from what the robot says it holds; nothing, if it does not say."""
+        """The first torque may differ by one step from the torque that the robot reports; with no report it is
+        free."""
         zero = np.zeros_like(estimate.q)
         sent = np.clip(np.nan_to_num(estimate.torque_sent, nan=0.0), -self._limit, self._limit)
         return StepLimitState(self.inner.init(estimate), estimate.q, sent, zero, 0.0)
@@ -117,7 +118,7 @@ class StepLimit(Controller[StepLimitState]):
 
 
 def _affordable(held_back: Array, way: Array, diagnostics: Mapping[str, Any]) -> float:
-    """Share of the torque that may be held back (n,), for a step (n,) rad like the last one."""
+    """Share of the torque that may be withheld (n,), for a step (n,) rad like the last one."""
     if SPENDABLE not in diagnostics:
         return 1.0
     cost = -float(held_back @ way)

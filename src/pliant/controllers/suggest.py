@@ -14,19 +14,19 @@ from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
 _INTEGRAL = 20.0  # 1/s
-_SLOWER = 0.1  # k_i times the loop's lateness, at most
-_FAST = 1e-3  # s; stiffness that a slower or later loop does not bear
+_SLOWER = 0.1  # largest k_i times the delay of the loop
+_FAST = 1e-3  # s; above this period or delay the stiffness is reduced
 _MOST_DAMPING = 20.0  # N·m·s/rad
-_SOFT = 3e-3  # s; lateness up to which a wrist bears the soft gains' rotation
+_SOFT = 3e-3  # s; largest delay at which a wrist is stable with the rotational stiffness of the soft gains
 
 
 def suggest_stack(robot: Robot, config: StackConfig, believed: Believed) -> StackConfig:
-    """A stack for the task's frames: gains of `config` where the loop is fast and its arm heavy, soft ones otherwise.
+    """A stack for the task's frames: gains of `config` where the loop is fast and the arm heavy, otherwise soft ones.
 
     Where a reference carries an impedance for a frame, the task has that one. The model's gravity torque is added
-    where the robot does not compensate gravity by itself. Beyond 3 ms the stiffness of rotation falls as 1 / lateness:
-    at 7 ms 60 N·m/rad made a wrist that carries a tool of 0.2 m flutter. Plain springs, which come to rest by damping
-    alone, get 0.4 m / lateness for all joints, m the smallest inertia that a joint feels at home: ω T = 0.4 of the
+    where the robot does not compensate gravity by itself. Beyond 3 ms the rotational stiffness falls as 1 / delay: with
+    a delay of 7 ms, 60 N·m/rad made a wrist with a tool of 0.2 m oscillate. Plain springs, which come to rest by
+    damping alone, get a joint damping of 0.4 m / delay, m the smallest inertia of a joint at home: ω T = 0.4 of the
     joint's own speed loop.
     """
     late = believed.period + believed.sensing_delay + believed.computation_delay
@@ -44,7 +44,7 @@ def suggest_stack(robot: Robot, config: StackConfig, believed: Believed) -> Stac
 
 
 def _lightest(robot: Robot) -> float:
-    """kg m²: the smallest inertia that a torque of one joint meets at home, the others free."""
+    """kg m²: the smallest inertia of one joint at home, the others free."""
     M = mass_matrix(robot.model, robot.model.createData(), robot.home)
     return float(1.0 / np.max(np.diag(np.linalg.inv(M))))
 
@@ -58,7 +58,7 @@ def _task(gains: FrameTaskConfig, frame: str, believed: Believed, joints: int) -
 
 
 def _later(task: FrameTaskConfig, late: float) -> FrameTaskConfig:
-    """With a softer rotation where the loop is later than its gains bear."""
+    """With a softer rotation where the delay of the loop requires it."""
     rotation = task.rotation
     if rotation is None or late <= _SOFT:
         return task
@@ -81,8 +81,8 @@ def suggest_operational_space(
 ) -> OperationalSpaceConfig:
     """The task's first frame; the model adds what the robot does not compensate by itself.
 
-    Where a force is asked for k_i is a tenth of 1 / (period and delays), 20 /s at most: the force is regulated ten
-    times more slowly than the loop answers.
+    Where a force is regulated, k_i is a tenth of 1 / (period and delays), 20 /s at most: the force is regulated ten
+    times more slowly than the loop responds.
     """
     late = believed.period + believed.sensing_delay + believed.computation_delay
     pressing = 0.0 if believed.presses is None else min(_INTEGRAL, _SLOWER / late)

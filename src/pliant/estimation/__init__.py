@@ -1,4 +1,4 @@
-"""What the robot believes about itself and about its contacts."""
+"""Estimators: filters, contact wrenches, disturbances, environments and surfaces."""
 
 from pliant.estimation.carried_mass import CarriedMass
 from pliant.estimation.complementary_force import ComplementaryForce

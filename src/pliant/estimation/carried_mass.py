@@ -1,4 +1,4 @@
-"""What a force/torque sensor carries and feels."""
+"""Loads on a force/torque sensor: mass, inertia and bias."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class SensorMotion:
 
 @dataclass(frozen=True)
 class CarriedMass:
-    """What a sensor carries and feels, and how its zero is off: all of it is taken out of the reading."""
+    """Mass and inertia beyond a sensor, and its bias; their effect is subtracted from the reading."""
 
     mass: float = 0.0
     """kg"""
@@ -38,7 +38,7 @@ class CarriedMass:
     """xx, yy, zz, xy, xz, yz about the centre in the sensor's axes, kg m²"""
 
     def reading(self, motion: SensorMotion) -> Array:
-        """What it makes the sensor read without any contact, (6,) in the sensor's axes.
+        """The sensor's reading without contact, (6,) in the sensor's axes.
 
         Newton and Euler about the sensor's origin: f = −m (a + α × c + ω × (ω × c) − g), μ = c × f − I α − ω × I ω.
         """
@@ -49,7 +49,8 @@ class CarriedMass:
         return np.concatenate([force, moment]) + np.array(self.bias)
 
     def plus(self, other: CarriedMass) -> CarriedMass:
-        """Both together. The turning inertia of `other` counts about its own centre, which is right for a point."""
+        """Both loads together. The inertia of `other` is taken about its own centre of mass, which is right for a point
+        mass."""
         mass = self.mass + other.mass
         if other.mass == 0.0:
             center = np.array(self.center)

@@ -1,4 +1,4 @@
-"""A low-passed contact force without the filter's lag: what the filter takes off is put back from the motion."""
+"""A low-passed contact force without the filter's lag, which is compensated by a contact model."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from pliant.surfaces import SurfaceGeometry
 
 @dataclass(frozen=True, slots=True)
 class ComplementaryState:
-    """What the estimator remembers."""
+    """State of the estimator."""
 
     inner: Any
     time: float
@@ -30,16 +30,16 @@ class ComplementaryState:
     filter: Memory | None
     """of the wrench minus what is modelled; None before the first step"""
     touched: bool = False
-    """whether the frame touched at the last reading"""
+    """whether the frame was in contact at the last reading"""
 
 
 class ComplementaryForce(Estimator[ComplementaryState]):
     """The contact wrench is H w + (1 − H) w_m with a low-pass H and w_m = −n ∫ K ṗ·n dt, the force by which a spring K
     changes with the motion: slow changes come from the sensor, fast ones from the joints.
 
-    With the right K, n and the surface at rest the sum has no lag, and an error of the sensor above the cutoff is
-    still taken off. A motion along n that changes no force (a path along a surface tilted otherwise than n) errs by
-    K ṗ·n times the filter's delay.
+    With the right K, n and the surface at rest the sum has no lag, and sensor errors above the cutoff are still
+    removed. A motion along n without a change of force (a path on a surface whose tilt differs from n) causes an error
+    of K ṗ·n times the filter's delay.
 
     Args:
         inner: where the estimates come from.
@@ -82,7 +82,7 @@ class ComplementaryForce(Estimator[ComplementaryState]):
         along = np.concatenate([normal, np.zeros(3)])
         rest = wrench - modelled * along
         memory = state.filter
-        if memory is None or touches != state.touched:  # the model begins anew, and the filter with it
+        if memory is None or touches != state.touched:  # model and filter are reset
             memory = self._filter.init(rest)
         passed, memory = self._filter.step(rest, memory)
         wrenches = {**estimate.wrenches, self.frame: passed + modelled * along}

@@ -1,4 +1,4 @@
-"""The estimator of a robot with good sensors: what is measured is believed, velocities may be low-passed."""
+"""The estimator of a robot with good sensors: it returns the measurement, with low-passed velocities if wanted."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pliant.spatial import Array
 
 
 class DirectEstimator(Estimator[Array]):
-    """Passes joint signals on; its state is the filtered joint velocity (n,), rad/s. It does not look at wrenches.
+    """Passes joint signals on; its state is the filtered joint velocity (n,), rad/s. It ignores wrenches.
 
     Args:
         velocity_gain: α of v ← v + α (v_measured − v); 1 filters nothing.

@@ -1,4 +1,4 @@
-"""Adds the belief about the environment's stiffness and damping to another estimator."""
+"""Adds estimated stiffness and damping of the environment to another estimator."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class EnvironmentState:
 class EnvironmentEstimator(Estimator[EnvironmentState]):
     """Fills `Estimate.environments` for one contact frame, from its normal force and its motion.
 
-    Source of the idea: [FFMPC] Kleff et al. 2024, sec. VIII-B, names the online estimation of the K and B of its eq. 16
-    as a way to go; the method is plain least squares, see `EnvironmentFit`.
+    Source of the idea: [FFMPC] Kleff et al. 2024, sec. VIII-B, suggests the online estimation of K and B of its eq. 16;
+        the method here is recursive least squares, see `EnvironmentFit`.
 
     Args:
         inner: reports the contact wrench of the frame.
@@ -38,11 +38,10 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
         frame: that touches.
         period: s between two measurements.
         normal: (3,) outward normal of the surface in the world, or the believed surface itself where its normal turns.
-            It must be the surface's: what slides along a surface and is measured along another direction moves without
-            force.
-        config: how the fit forgets and when it learns.
-        sliding: m/s of tangential speed above which nothing is learnt, for a normal that is not known exactly; None:
-            learn always.
+            It must be the surface's normal: along another direction, sliding on the surface is a motion without force.
+        config: parameters of the fit.
+        sliding: m/s of tangential speed above which samples are ignored, for a normal that is not known exactly; None:
+            no limit.
 
     Raises:
         RobotError: a frame that the robot does not have.

@@ -18,37 +18,38 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True, slots=True)
 class FitState:
-    """What the fit remembers. The signals are depth, its rate, and force: m, m/s, N."""
+    """State of the fit. The signals are depth, its rate, and force: m, m/s, N."""
 
     reference: Array | None = None
-    """(3,) signals at first touch, taken off all others against rounding; None out of contact"""
+    """(3,) signals at first contact, subtracted from all others for numerical accuracy; None without contact"""
     filter: Memory | None = None
     accepted: Array | None = None
     """(3,) filtered signals that were used last"""
     count: int = 0
-    """samples used since first touch"""
+    """samples used since first contact"""
     mean: Array = field(default_factory=lambda: np.zeros(3))
     """(3,) exponentially weighted"""
     covariance: Array = field(default_factory=lambda: np.zeros((3, 3)))
     """(3, 3) exponentially weighted"""
     found: Environment | None = None
-    """the last belief that was accurate enough; survives the contact"""
+    """the last estimate that was accurate enough; it is kept after the contact ends"""
 
 
 class FitConfig(Config):
-    """How the fit forgets and when it learns."""
+    """Forgetting factor, filter and thresholds of the fit."""
 
     memory: float = quantity(
         300.0,
         "1",
-        "samples after which an old one counts 1/e; only those that are used count, so that standstill erases nothing",
+        "number of used samples after which the weight of a sample has fallen to 1/e; unused samples"
+        " (standstill) do not count",
         gt=0.0,
         le=1e9,
     )
     cutoff: float = quantity(
         50.0,
         "Hz",
-        "of the Butterworth filter that all three signals pass alike, which leaves their relation as it is",
+        "of the Butterworth filter of all three signals; the same filter for each keeps their relation",
         gt=0.0,
         le=1e6,
     )
@@ -56,14 +57,14 @@ class FitConfig(Config):
     least_force: float = quantity(
         0.1,
         "N",
-        "that the force must have changed since the last sample that was used; a few times its noise after the filter",
+        "least change of the force since the last used sample; a few times its noise after the filter",
         ge=0.0,
         le=1e6,
     )
     least_motion: float = quantity(
         1e-7,
         "m",
-        "that the depth must have changed since then; above the position noise after the filter",
+        "least change of the depth since then; above the position noise after the filter",
         ge=0.0,
         le=1.0,
     )
@@ -71,9 +72,9 @@ class FitConfig(Config):
         0.0, "m", "standard deviation of the depth before the filter; see `EnvironmentFit`", ge=0.0, le=1.0
     )
     noise_rate: float = quantity(0.0, "m/s", "the same of its rate", ge=0.0, le=1e3)
-    least_samples: int = Field(default=40, ge=1, le=10**9, description="samples before the first belief")
+    least_samples: int = Field(default=40, ge=1, le=10**9, description="samples before the first estimate")
     accuracy: float = quantity(
-        0.2, "1", "largest relative standard uncertainty of K in a belief that is shown", gt=0.0, le=1e12
+        0.2, "1", "largest relative standard uncertainty of K in an estimate that is returned", gt=0.0, le=1e12
     )
 
 
@@ -81,13 +82,13 @@ class EnvironmentFit:
     """F = K p + B ṗ + c along the normal, with depth p from an unknown zero.
 
     Least squares over (p, ṗ, 1) with exponential forgetting, in the form of weighted means and covariances, which
-    eliminates c and neither winds up nor loses digits between 3e2 and 1e6 N/m. Samples count only when force and motion
-    have changed: without that gate a robot at rest would replace what it learnt by noise.
+    eliminates c, does not wind up, and stays accurate between 3e2 and 1e6 N/m. Samples count only when force and motion
+    have changed: without this condition, noise would replace the data while the robot rests.
 
-    Motion noise pulls K towards zero by the factor 1/(1 + σ_p²/var p), σ_p after the filter (errors in variables). With
-    its standard deviation given, its variance is taken off var p, which removes the pull, and a contact whose motion
-    does not stand out of the noise (var p < 3 σ_p²) is not identified at all. A force that is δ s older than the motion
-    shifts B by −K δ.
+    Motion noise pulls K towards zero by the factor 1/(1 + σ_p²/var p), σ_p after the filter (errors in variables). If
+    its standard deviation is given, its variance is subtracted from var p, which removes this bias, and a contact whose
+    motion does not exceed the noise (var p < 3 σ_p²) is not identified at all. A force that is δ s older than the
+    motion shifts B by −K δ.
 
     Args:
         config: see there.
@@ -140,10 +141,10 @@ class EnvironmentFit:
         return changed(state, accepted=value, count=count, mean=mean, covariance=covariance, found=found or state.found)
 
     def _solve(self, covariance: Array, count: int, share: float) -> Environment | None:
-        """K and B with their uncertainties; None where the data do not tell K."""
+        """K and B with their uncertainties; None where the data do not determine K."""
         independent = min(float(count), 2.0 / share - 1.0) / self._correlated
         told = covariance - np.pad(self._noise, (0, 1))
-        for columns in ([0, 1], [0]):  # a damping below zero is none
+        for columns in ([0, 1], [0]):  # a damping below zero is set to zero
             if any(told[i, i] < 2.0 * self._noise[i, i] for i in columns):
                 continue
             A, b = told[np.ix_(columns, columns)], told[columns, 2]

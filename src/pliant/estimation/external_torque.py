@@ -23,12 +23,12 @@ from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
 
 _SINGULAR = 1e-2
-"""smallest singular value of Jᵀ relative to its largest below which a direction of the force counts as unseen"""
+"""smallest singular value of Jᵀ relative to its largest below which a direction of the force counts as unobservable"""
 
 
 @dataclass(frozen=True, slots=True)
 class ExternalTorqueState:
-    """What the estimator remembers."""
+    """State of the estimator."""
 
     inner: Any
     time: float
@@ -43,12 +43,12 @@ class ExternalTorqueEstimator(Estimator[ExternalTorqueState]):
     """τ_ext = RNEA(q, v, v̇) − τ̂, and with a contact frame the force that explains it best.
 
     The acceleration comes from differences of v through a second-order Butterworth filter, as in the paper. With
-    `aligned` the measured torque and the bias forces pass the same filter, so that both sides are equally late; without
-    it (the paper's form) a fast motion shows up as an external torque.
+    `aligned` the measured torque and the bias forces pass the same filter, so that both have the same delay; without it
+    (the paper's form) a fast motion appears as an external torque.
 
     Without a frame `Estimate.disturbance` is τ_ext. With one, `Estimate.wrenches[frame]` is the least-squares solution
-    of `Jᵀ λ = τ_ext` (world axes), whatever a sensor at that frame says is replaced, and `Estimate.disturbance` is what
-    λ leaves unexplained. Directions in which the arm is close to singular get no force.
+    of `Jᵀ λ = τ_ext` (world axes), it replaces the reading of a sensor at that frame, and `Estimate.disturbance` is
+    what λ leaves unexplained. In directions in which the arm is close to singular, the force is zero.
 
     Args:
         inner: the estimator whose estimates are completed.
@@ -131,7 +131,7 @@ def inverse_dynamics(robot: Robot, data: pin.Data, q: Array, v: Array, a: Array)
 
 
 def contact_force(J: Array, external: Array) -> Array:
-    """Least-squares λ (k,) of Jᵀ λ = τ_ext; directions that the joints hardly feel get none.
+    """Least-squares λ (k,) of Jᵀ λ = τ_ext; zero in directions with hardly any effect on the joints.
 
     Args:
         J: (k, n) contact Jacobian.

@@ -24,7 +24,7 @@ class FilteredState:
 
 
 class FilteredEstimator(Estimator[FilteredState]):
-    """Low-passes velocities, torques and contact wrenches of another estimator; what has no filter passes unchanged.
+    """Low-passes velocities, torques and contact wrenches of another estimator; signals without a filter are unchanged.
 
     The remedy for gearing ripple in a force signal is a `Butterworth` below the ripple's frequency.
 

@@ -1,4 +1,4 @@
-"""Low-pass filters for vectors, sampled at a fixed period. The state goes in and comes out."""
+"""Low-pass filters for vectors, sampled at a fixed period. The state is passed in and returned."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Memory(NamedTuple):
 
 
 class LowPass(ABC):
-    """A low-pass filter with gain one at rest."""
+    """A low-pass filter with unit DC gain."""
 
     @abstractmethod
     def init(self, value: Array) -> Memory:
-        """State of a filter that has seen `value` (k,) for ever: its output starts there without a transient."""
+        """State of a filter in steady state at `value` (k,): its output starts there without a transient."""
 
     @abstractmethod
     def step(self, value: Array, state: Memory) -> tuple[Array, Memory]:
@@ -33,8 +33,8 @@ class LowPass(ABC):
 
 
 class FirstOrder(LowPass):
-    """y ← y + α (x − y), α = 1 − e^{−2π f_c T}: the step response of a continuous first-order filter, hit at every
-    sample.
+    """y ← y + α (x − y), α = 1 − e^{−2π f_c T}: the step response of a continuous first-order filter, matched at the
+    samples.
 
     Args:
         cutoff: f_c, Hz.

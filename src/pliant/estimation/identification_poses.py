@@ -1,4 +1,4 @@
-"""Configurations of an arm at which a force/torque sensor learns most about the tool that it carries."""
+"""Configurations of an arm that are most informative for the identification of its tool with a force/torque sensor."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pliant.robot import Robot
 from pliant.spatial import Array, skew
 
 POSES, JOINTS, SHARE = 8, 3, 0.8
-"""number of poses, of the last joints that move, and share of their range, where nobody asks for others"""
+"""default number of poses, number of the last joints that move, and share of their range"""
 _CANDIDATES = 400
 _REGULAR = 0.25  # least share of the home's smallest singular value that a pose and the way to it may have
 
@@ -28,10 +28,10 @@ def identification_poses(
 ) -> Array:
     """Chooses n configurations (n, robot.n), rad, starting at home, in an order that moves little from one to the next.
 
-    Only the last joints move, so that the arm stays where its home is; what stands around it is not known here: look at
-    the poses before running them. Poses beyond a singularity are left out, for controllers in task space would have to
-    pass through it. Among random candidates each pose is the one that adds most to the information about
-    m c and the moment bias (D-optimal, one at a time).
+    Only the last joints move, so that the arm stays near its home. Obstacles are not known here: check the poses before
+    running them. Poses beyond a singularity are left out, because task-space controllers would have to pass through it.
+    Among random candidates each pose is the one that adds most to the information about m c and the moment bias
+    (D-optimal, one at a time).
 
     Args:
         robot: with its joint limits and home.
@@ -69,7 +69,7 @@ def _candidates(robot: Robot, frame: str, joints: int, share: float, floor: floa
     """Postures (m, n), home first, and R_world_sensor (m, 3, 3)."""
     data, index = robot.model.createData(), robot.frame_id(frame)
     moving = np.arange(robot.n) >= robot.n - joints
-    # a joint without limits turns by half a turn to each side
+    # a joint without limits turns by up to half a turn to each side
     middle = np.clip(0.5 * (robot.position_lower + robot.position_upper), -np.pi, np.pi)
     half = np.minimum(0.5 * (robot.position_upper - robot.position_lower), np.pi) * share
     draws = middle + half * np.random.default_rng(seed).uniform(-1.0, 1.0, (_CANDIDATES, robot.n))
@@ -87,7 +87,7 @@ def _candidates(robot: Robot, frame: str, joints: int, share: float, floor: floa
 
 
 def _smallest_singular_value(robot: Robot, data: pin.Data, q: Array, index: int) -> float:
-    """Of the frame's Jacobian, of its linear part where the robot has fewer than six joints."""
+    """Least singular value of the frame's Jacobian, of its linear part where the robot has fewer than six joints."""
     J = pin.computeFrameJacobian(robot.model, data, q, index, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
     rows = J if robot.n >= 6 else J[:3]
     return float(np.linalg.svd(rows, compute_uv=False)[-1])

@@ -1,4 +1,4 @@
-"""Joint accelerations out of joint velocities."""
+"""Joint accelerations from joint velocities."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class AccelerationState:
 class JointAcceleration:
     """Differences of v after two equal first-order stages.
 
-    Its error, for a sampling period T and α = 1 − e^{−2π f_c T}: it is 2 T (1 − α)/α + T/2 late, so an oscillation of ω
-    rad/s is off by a share of ω times that, 0.8 % at 1 Hz with 200 Hz and 1 ms; white noise σ_v on v becomes
-    σ_v √(2 α³/(2 − α)³) / T on the acceleration, 0.6 rad/s² for 1e-3 rad/s. A force controller that feels the inertia
-    of a heavy tool too late rings, so lower the cutoff only as far as the noise of v asks for.
+    Its error, for a sampling period T and α = 1 − e^{−2π f_c T}: it is delayed by 2 T (1 − α)/α + T/2, so the relative
+    error of an oscillation of ω rad/s is ω times that, 0.8 % at 1 Hz with 200 Hz and 1 ms; white noise σ_v on v becomes
+    σ_v √(2 α³/(2 − α)³) / T on the acceleration, 0.6 rad/s² for 1e-3 rad/s. If the inertial force of a heavy tool is
+    compensated too late, a force controller oscillates: lower the cutoff only as far as the noise of v requires.
 
     Raises:
         ConfigError: on construction, when the cutoff is not above zero.
@@ -44,7 +44,7 @@ class JointAcceleration:
             raise ConfigError(f"the cutoff of joint accelerations must be above 0 Hz, got {self.cutoff} Hz")
 
     def init(self, time: float, v: Array) -> AccelerationState:
-        """State of a robot that has moved with v (n,) for ever; time in s."""
+        """State of a robot that has moved with constant v (n,); time in s."""
         return AccelerationState(time, v, v)
 
     def step(self, time: float, v: Array, state: AccelerationState) -> tuple[Array, AccelerationState]:

@@ -1,4 +1,5 @@
-"""Joint positions from velocities and positions together: what integrates is calm, what is measured does not drift."""
+"""Joint positions from measured velocities and positions: the integrated velocity has little noise, the measured
+position does not drift."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True, slots=True)
 class JointStateState:
-    """What the filter remembers."""
+    """State of the filter."""
 
     inner: Any
     """state of the estimator inside"""
@@ -27,7 +28,7 @@ class JointStateState:
     v: Array
     """(n,) last velocity, rad/s"""
     readings: int
-    """how many there were"""
+    """number of readings"""
 
 
 class JointStateFilter(Estimator[JointStateState]):

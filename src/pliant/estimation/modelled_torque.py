@@ -24,7 +24,7 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True, slots=True)
 class ModelledTorqueState:
-    """What the estimator remembers."""
+    """State of the estimator."""
 
     inner: Any
     time: float

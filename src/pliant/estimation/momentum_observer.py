@@ -1,6 +1,6 @@
-"""The generalised-momentum observer: which joint torque acts that the model does not explain.
+"""The generalised-momentum observer: estimates the joint torque that the model does not explain.
 
-With d all that the model leaves out (friction, a wrong payload, a bias of the drives, a push),
+With d everything that is missing in the model (friction, a wrong payload, a bias of the drives, a push),
 
     M(q) v̇ + C(q, v) v + g(q) = τ + Jᵀλ + d,        p = M v
     ṗ = τ + Jᵀλ + d + β(q, v),                      β = Cᵀ v − g        (because Ṁ = C + Cᵀ)
@@ -33,7 +33,7 @@ from pliant.spatial import Array
 from pliant.surfaces import PlaneSurface, SurfaceGeometry
 
 GAIN = 30.0
-"""rad/s: k of an observer where nobody asks for another one"""
+"""rad/s, default k"""
 TorqueSource = Literal["sent", "measured"]
 ContactShare = Literal["all", "normal", "none"]
 Compensation = Literal["none", "gravity", "gravity+coriolis"]
@@ -41,7 +41,7 @@ Compensation = Literal["none", "gravity", "gravity+coriolis"]
 
 @dataclass(frozen=True, slots=True)
 class MomentumState:
-    """What the observer remembers."""
+    """State of the observer."""
 
     inner: Any
     """state of the estimator inside"""
@@ -52,7 +52,7 @@ class MomentumState:
     explained: Array
     """Jᵀλ + β (n,) at the last reading, N·m"""
     torques: tuple[Array, ...]
-    """torques (n,) that the readings do not show yet, the oldest first, N·m"""
+    """torques (n,) that the delayed readings do not show yet, the oldest first, N·m"""
     disturbance: Array
     """d̂ (n,), N·m"""
 
@@ -60,25 +60,25 @@ class MomentumState:
 class MomentumObserver(Estimator[MomentumState]):
     """Adds `Estimate.disturbance` to another estimator; works in contact and in free space.
 
-    Each step hits the continuous observer's response to a constant d exactly:
+    Each step matches the continuous observer's response to a constant d exactly:
     `d̂ ← d̂ + (1 − e^{−kT}) ((p − p_before)/T − τ − mean(Jᵀλ + β) − d̂)`, the mean taken over both ends of the period.
-    A controller takes the disturbance out by sending `u − d̂`.
+    A controller compensates the disturbance by sending `u − d̂`.
 
     Joint signals come from the measurement itself (a velocity filter would show up as a disturbance), contact wrenches
-    from the estimator inside, which has taken the tool's weight out of them.
+    from the estimator inside, which has removed the tool's weight from them.
 
     Args:
         inner: the estimator whose estimates are completed.
-        robot: the model that explains.
-        gain: k, rad/s. Higher finds d faster and passes more velocity noise: about k M σ_v.
+        robot: the dynamic model.
+        gain: k, rad/s. A higher gain converges faster and passes more velocity noise, about k M σ_v.
         torque: "sent" counts everything between the command and the link as disturbance (bias, gain, friction of the
-            drives); "measured" trusts the joint torque sensors and leaves what acts behind them.
-        contact: how much of the contact wrenches the model explains. "normal": the force along `normal`, so that
-            friction at the contact falls into d̂; "all": the whole wrench; "none": contact is a disturbance.
+            drives); "measured" uses the joint torque sensors, so that only torques on the link side remain.
+        contact: which part of the contact wrenches belongs to the model. "normal": the force along `normal`, so that
+            friction at the contact is part of d̂; "all": the whole wrench; "none": contact is a disturbance.
         normal: (3,) outward normal of the surface in the world, any length above zero, or the believed surface itself
             where its normal turns.
         frames: whose contact wrenches count; None: every one that the estimator inside reports.
-        compensation: what the robot's own controller adds, invisibly, to the torque.
+        compensation: what the robot's own controller adds to the torque without reporting it.
         late_readings: whole periods by which q and v are older than the torque that arrives with them.
 
     Raises:
@@ -129,7 +129,7 @@ class MomentumObserver(Estimator[MomentumState]):
         """
         estimate, inner = self.inner.step(measurement, state.inner)
         period = time_since(state.time, measurement)
-        if period == 0.0:  # the first measurement starts the observer and is its first step, too
+        if period == 0.0:  # the first measurement initialises the observer and is its first step
             return changed(estimate, disturbance=state.disturbance), changed(state, inner=inner)
         torques = (*state.torques, self._applied(measurement))
         momentum, explained = self._model_terms(measurement, estimate.wrenches)

@@ -1,4 +1,4 @@
-"""Estimators that remember need readings in the order of their times."""
+"""Estimators with a state need readings in the order of their times."""
 
 from __future__ import annotations
 

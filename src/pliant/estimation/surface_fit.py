@@ -1,4 +1,4 @@
-"""How a surface stands, from the places at which a tool touched it."""
+"""Pose of a surface, from the points at which a tool touched it."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array, cross, skew
 from pliant.surfaces import SurfaceGeometry
 
-_AVERAGED = 10  # readings at least, or noise alone would look like a way
+_AVERAGED = 10  # least number of readings between two points, or noise alone would look like a motion
 
 
 @dataclass(frozen=True)
 class SurfaceFitConfig:
-    """What is known beforehand, and how far readings are trusted.
+    """Prior uncertainty of the surface, and noise of the contact points.
 
     Raises:
         ConfigError: on construction, a number that is not finite and above zero (a radius may be zero).
     """
 
     radius: float = 0.0
-    """m, of the ball that touches, round the contact frame's origin"""
+    """m, of the contact sphere about the contact frame's origin"""
     stiffness: float = 2e4
-    """N/m, believed: by how much the surface gives way"""
+    """N/m, believed stiffness of the surface"""
     shift_std: float = 0.01
-    """m, by which the believed surface may be off"""
+    """m, standard deviation of the believed surface's position"""
     turn_std: float = math.radians(5.0)
-    """rad, by which the believed surface may be turned"""
+    """rad, standard deviation of its orientation"""
     place_std: float = 5e-4
-    """m, of a place of contact: kinematics, and what the stiffness does not explain"""
+    """m, standard deviation of a contact point: kinematics, and errors of the stiffness"""
     spacing: float = 2e-3
-    """m between two places; the readings on the way are averaged, ten at least"""
+    """m between two contact points; the readings in between are averaged, at least ten"""
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -54,26 +54,25 @@ class SurfaceFitState:
 
     inner: Any
     pivot: Array | None = None
-    """(3,) m; None: nothing was touched yet"""
+    """(3,) m; None: no contact yet"""
     shift_turn: Array = field(default_factory=lambda: np.zeros(6))
     """(6,) m and rad, of the believed surface"""
     covariance: Array = field(default_factory=lambda: np.zeros((6, 6)))
     """(6, 6)"""
     last: Array = field(default_factory=lambda: np.zeros(3))
-    """(3,) m, the place before"""
+    """(3,) m, the last contact point"""
     summed: Array | None = None
-    """(4,) of the readings since the last place: position (m) and normal force (N)"""
+    """(4,) sums over the readings since the last contact point: position (m) and normal force (N)"""
     count: int = 0
     felt: FeltSurface | None = None
 
 
 class SurfaceEstimator(Estimator[SurfaceFitState]):
-    """Fills `Estimate.surfaces` for one contact frame: the believed surface is turned and shifted until it lies under
-    the places that the tool touched (a Kalman filter over shift and rotation vector, 6 numbers that do not change,
-    linear about the belief; its prior is what the belief may be off by).
-
-    Only places count, never the direction of the force: under sliding that is off by the friction angle. Along a
-    direction in which the tool has not moved the believed tilt stays, and `normal_std` says how uncertain it is.
+    """Fills `Estimate.surfaces` for one contact frame: the believed surface is turned and shifted to fit the points
+    that the tool touched (a Kalman filter over shift and rotation vector, 6 numbers that do not change, linear about
+    the belief; its prior is the uncertainty of the belief). Only positions are used, never the direction of the force,
+    which deviates by the friction angle during sliding. Along a direction in which the tool has not moved the believed
+    tilt stays, and `normal_std` says how uncertain it is.
 
     Args:
         inner: the estimator before it.
@@ -127,11 +126,13 @@ class SurfaceEstimator(Estimator[SurfaceFitState]):
         return changed(state, felt=self._felt(position, state))
 
     def _fitted(self, place: Array, force: float, state: SurfaceFitState) -> SurfaceFitState:
-        """One step of the filter: the ball's centre is its radius over the surface, less what the surface gives way."""
+        """One step of the filter: the distance of the sphere's centre from the surface is its radius minus the
+        deflection of the surface."""
         assert state.pivot is not None
         spread = state.covariance
         distance = self._moved(state).near(place).distance
-        # derivatives at the belief, always: taken at a changing estimate they would tell of turns that nothing shows
+        # derivatives at the believed surface in every step: at a changing estimate they would add false information
+        # about directions that are not observed
         n = self.surface.normal(place)
         H = -np.concatenate([n, cross(place - state.pivot, n)])
         gain = spread @ H / (float(H @ spread @ H) + self.config.place_std**2)

@@ -1,4 +1,4 @@
-"""Taring: what a force/torque sensor reads at the start of a run counts as what it carries."""
+"""Taring: the reading of a force/torque sensor at the start of a run is taken as its load."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ _KINDS = ("weight", "bias")
 
 @dataclass(frozen=True)
 class Tare:
-    """How to tare. The robot must stand still and touch nothing meanwhile; no contact is believed until it is done.
+    """How to tare. The robot must stand still without contact; until taring ends, no contact is reported.
 
-    One pose cannot tell a weight from an offset. "weight" takes the force along gravity for a mass (its centre as close
-    to the sensor as the moment allows) and only the rest for an offset: right for an unknown payload, and its weight
-    turns with the sensor and its inertia counts. "bias" takes all for an offset: right for a sensor whose zero drifted.
+    One pose cannot distinguish a weight from an offset. "weight" takes the force along gravity for a mass (its centre
+    as close to the sensor as the moment allows) and only the rest for an offset. This is right for an unknown payload;
+    its weight then turns with the sensor, and its inertia is compensated. "bias" takes everything for an offset, which
+    is right for a sensor whose zero has drifted.
 
     Raises:
         ConfigError: on construction, when a value is not above zero or the kind is unknown.
@@ -43,7 +44,7 @@ class Tare:
 
 @dataclass(frozen=True, slots=True)
 class TareState:
-    """Readings so far, and what they came to."""
+    """Sums of the readings, and the result."""
 
     start: float
     """s"""
@@ -53,13 +54,13 @@ class TareState:
     gravity: Mapping[str, Array] = field(default_factory=dict[str, Array])
     """sensor → (3,) sum of gravity in its axes"""
     found: Mapping[str, CarriedMass] | None = None
-    """sensor → what it turned out to carry; None while taring"""
+    """sensor → load that was found; None while taring"""
 
 
 def tare_step(
     tare: Tare, time: float, v: Array, unexplained: Mapping[str, Array], gravity: Mapping[str, Array], state: TareState
 ) -> TareState:
-    """Takes one more reading in; the tare is found with the first one that is `duration` old or older.
+    """Adds one reading; the tare ends with the first one at or after `duration`.
 
     Args:
         tare: how.

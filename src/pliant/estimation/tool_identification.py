@@ -5,9 +5,9 @@ In the sensor's axes, with g the acceleration of gravity there, a tool of mass m
     f = m g + b_f                   4 unknowns, 3 equations per pose
     μ = (m c) × g + b_μ             6 unknowns, 3 equations per pose
 
-linear in m, m c and the biases. Both systems are solved by least squares on their own, because forces and moments have
-noise of their own. The standard uncertainties follow from the residuals: they hold what differs from pose to pose,
-besides noise also errors of the arm's orientation.
+linear in m, m c and the biases. The two systems are solved separately by least squares, because the noise of forces and
+moments differs. The standard uncertainties follow from the residuals: they include everything that varies from pose to
+pose: noise and errors of the arm's orientation.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from pliant.spatial import Array, skew
 CONDITION_LIMIT = 30.0
 """largest condition number of the regressors, gravity scaled to one"""
 LEAST_POSES = 4
-"""fewest poses; three would fit, but say too little about the noise"""
+"""least number of poses; three would be enough for a fit, but not for an estimate of the noise"""
 
 
 @dataclass(frozen=True, slots=True)
 class ToolIdentification:
-    """What a sensor carries and how its zero is off, in the sensor's axes. Each `…_std` is a standard uncertainty."""
+    """Identified load and bias of a sensor, in the sensor's axes. Each `…_std` is a standard uncertainty."""
 
     mass: float
     """kg"""
@@ -49,10 +49,10 @@ class ToolIdentification:
     freedom: tuple[int, int]
     """degrees of freedom of those two: the standardised errors follow Student's t with as many"""
     condition: float
-    """the larger condition number of the two regressors: how well the poses were chosen"""
+    """the larger condition number of the two regressors: how informative the poses are"""
 
     def carried(self) -> CarriedMass:
-        """What the wrench estimator takes out of the readings of this sensor."""
+        """The load that the wrench estimator subtracts from the readings of this sensor."""
         center = np.zeros(3) if self.center is None else self.center
         b = [float(x) for x in self.bias]
         return CarriedMass(
@@ -77,10 +77,10 @@ def identify_tool(
         readings: (N, 6) wrench of the sensor at rest, in its own axes, free of contact, N and N·m.
         rotations: (N, 3, 3) R_world_sensor of the same poses.
         gravity: (3,) acceleration of gravity in the world, m/s².
-        condition_limit: poses that excite worse than this are refused.
+        condition_limit: poses with a larger condition number are refused.
 
     Raises:
-        ConfigError: too few poses, or poses between which gravity hardly turns in the sensor's axes.
+        ConfigError: too few poses, or poses between which the direction of gravity hardly changes in the sensor's axes.
         ShapeError: shapes that do not fit each other. SignalError: a value that is not finite.
     """
     wrenches, R = _checked(readings, rotations)

@@ -1,4 +1,4 @@
-"""Contact wrenches from force/torque sensors, and whether the frames touch anything."""
+"""Contact wrenches and contact states from force/torque sensors."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from pliant.spatial import Array, cross
 
 @dataclass(frozen=True)
 class TouchThresholds:
-    """When a frame is believed to touch: hysteresis on the size of its contact force."""
+    """Contact detection of a frame: hysteresis on the magnitude of its contact force."""
 
     begin: float = 1.0
     """N above which contact begins"""
     end: float = 0.5
     """N below which it ends"""
     linger: float = 5e-3
-    """s that the force has to stay below"""
+    """s for which the force must stay below `end`"""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.end <= self.begin or self.linger < 0.0:
@@ -42,27 +42,27 @@ class WrenchState:
     velocity: Array
     """(n,) filtered, rad/s"""
     above: Mapping[str, float]
-    """frame → s when its force was last above `TouchThresholds.end`; −∞: it does not touch"""
+    """frame → s when its force was last above `TouchThresholds.end`; −∞: no contact"""
     acceleration: AccelerationState
     tare: TareState | None
-    """None: nobody tares"""
+    """None: no taring"""
 
 
 class WrenchEstimator(Estimator[WrenchState]):
-    """Passes joint signals on, turns sensor readings into contact wrenches in world axes, and says what touches.
+    """Passes joint signals on, converts sensor readings into contact wrenches in world axes, and detects contacts.
 
-    Weight and inertia of what a sensor carries are taken out of its reading; the joint accelerations come from
+    Weight and inertia of the load are subtracted from the reading; the joint accelerations come from
     differences of v, whose error `JointAcceleration` states.
 
     Args:
         robot: gives the sensors' motion.
         carried: sensor frame → what it carries; frames that are not named carry nothing.
-        thresholds: when a frame touches.
-        velocity_gain: α of v ← v + α (v_measured − v); 1 filters nothing. It has no part in the accelerations.
-        contact_frames: sensor frame → the frame beyond it that touches; wrench and contact are given at that frame
-            and under its name. Sensors that are not named touch at their own frame.
+        thresholds: thresholds of the contact detection.
+        velocity_gain: α of v ← v + α (v_measured − v); 1 filters nothing. The accelerations do not use it.
+        contact_frames: sensor frame → contact frame beyond it; wrench and contact are given at that frame and under its
+            name. Other sensors use their own frame.
         acceleration: how joint accelerations are found.
-        tare: what to do at the start about what the sensors carry and nobody named; None: nothing.
+        tare: how unknown loads of the sensors are tared at the start; None: no taring.
 
     Raises:
         ConfigError: the gain is not within (0, 1], a contact frame that the sensor cannot feel or that has two sensors.
@@ -121,7 +121,7 @@ class WrenchEstimator(Estimator[WrenchState]):
     # ------------------------------------------------------------------ inside
 
     def _move(self, measurement: Measurement, state: WrenchState) -> AccelerationState:
-        """Kinematics of now; velocities and accelerations only where a sensor carries something."""
+        """Present kinematics; velocities and accelerations only where a sensor carries a load."""
         if not self.carried and self.tare is None:
             pin.framesForwardKinematics(self._model, self._data, measurement.q)
             return state.acceleration
@@ -136,7 +136,7 @@ class WrenchEstimator(Estimator[WrenchState]):
         return {sensor: self.carried.get(sensor, CarriedMass()).plus(found) for sensor, found in tare.found.items()}
 
     def _without(self, carried: CarriedMass | None, sensor: str, reading: Array) -> Array:
-        """(6,) what a load does not explain of a reading (6,), both in the sensor's axes."""
+        """(6,) reading minus the effect of a load, both in the sensor's axes."""
         frame = self._frame(sensor)
         if carried is None:
             return reading
@@ -147,7 +147,7 @@ class WrenchEstimator(Estimator[WrenchState]):
         return reading - carried.reading(SensorMotion(motion.linear - gravity, spin, motion.angular))
 
     def _at_contact(self, sensor: str, wrench: Array) -> tuple[str, Array]:
-        """The frame that touches, and the wrench (6,) there in world axes, of one (6,) in the sensor's."""
+        """The contact frame, and the wrench (6,) there in world axes, for a wrench (6,) in the sensor's axes."""
         R_world_sensor = self._rotation(sensor)
         force, moment = R_world_sensor @ wrench[:3], R_world_sensor @ wrench[3:]
         touching = self.contact_frames.get(sensor, sensor)

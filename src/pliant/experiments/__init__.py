@@ -1,1 +1,1 @@
-"""The engine: runs, sweeps, results, searches, for any study."""
+"""Runs, sweeps, results and parameter searches of any study."""

@@ -16,17 +16,18 @@ from pliant.telemetry.scene_topics import DrawnScene
 ENDINGS = (".webp", ".gif")
 _REFERENCE, _TRACE, _FORCE = (0.35, 0.55, 0.85, 1.0), (0.95, 0.45, 0.10, 1.0), (0.76, 0.18, 0.18, 1.0)
 _METRES_PER_NEWTON = 0.004
-_SHOWN = 0.05  # N; a smaller force has no arrow
-_POINTS = 400  # of a path, about
+_SHOWN = 0.05  # N; smaller forces have no arrow
+_POINTS = 400  # approximate number of points of a path
 
 
 def animate(log: Log, path: Path, *, seconds: float = 6.0, rate: float = 12.0, width: int = 480) -> Path:
-    """Draws the robot, its scene, the path wanted and drawn, and the contact force, the whole run in some seconds.
+    """Animates the robot, its scene, the reference and actual path, and the contact force; the whole run in a few
+    seconds.
 
     Args:
         log: of a simulated run.
         path: the picture, .webp or .gif.
-        seconds: how long it plays.
+        seconds: duration of the animation.
         rate: pictures per second.
         width: pixels; the height is three quarters of it.
 
@@ -34,7 +35,7 @@ def animate(log: Log, path: Path, *, seconds: float = 6.0, rate: float = 12.0, w
         The file.
 
     Raises:
-        ConfigError: another ending, or a length, rate or width that makes no picture.
+        ConfigError: another file type, or a duration, rate or width out of range.
         OutputError: the log holds no motion, this machine cannot render, or the file cannot be written.
         RobotError: the robot of the log is not here.
     """
@@ -47,7 +48,7 @@ def animate(log: Log, path: Path, *, seconds: float = 6.0, rate: float = 12.0, w
             f" {seconds:g} s at {rate:g} /s, {width} wide"
         )
     if "truth/q" not in log or len(log["truth/q"]) < 2:
-        raise OutputError(f"{log.source} holds no motion that could be drawn: it has no channel 'truth/q'")
+        raise OutputError(f"{log.source} has no motion that could be drawn: there is no channel 'truth/q'")
     drawn, _, _ = drawn_log(log)
     moments = np.linspace(0, len(log["truth/q"]) - 1, count).astype(int)
     frame = _frame(log)
@@ -60,13 +61,13 @@ def animate(log: Log, path: Path, *, seconds: float = 6.0, rate: float = 12.0, w
 
 
 def _frame(log: Log) -> str | None:
-    """The first frame with a place that is wanted and true."""
+    """The first frame with a reference and a true position."""
     names = [name.split("/")[1] for name in log.matching("/position") if name.startswith("reference/")]
     return next((name for name in names if f"truth/{name}/position" in log), None)
 
 
 def _camera(log: Log, frame: str | None) -> Camera:
-    """From the front right, so that base and way of the tool are in the picture."""
+    """View from the front right, so that the base and the path of the tool are visible."""
     if frame is None:
         return Camera()
     place = log[f"truth/{frame}/position"]

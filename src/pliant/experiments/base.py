@@ -1,4 +1,4 @@
-"""What a study is: cases, a way to build each of their runs, metrics from its log, and figures."""
+"""Base of a study: cases, how their runs are built, metrics of a log, figures."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
 
 class Study(ABC, Generic[C]):
-    """A family of cases that are built, measured and drawn the same way."""
+    """A family of cases with the same builder, metrics and figures."""
 
     name: str
     title: str
-    """one line, for people"""
+    """one line of text, for listings"""
     cases: Mapping[str, Case[C]]
     """by name; the first is the default"""
     worst: Collection[str] = ()
-    """names of metrics that the worst run of a row decides; of the others it shows the mean"""
+    """names of metrics for which a row shows the worst run; for others it shows the mean"""
 
     @property
     def controllers(self) -> Sequence[str]:
@@ -53,7 +53,7 @@ class Study(ABC, Generic[C]):
         return type(next(iter(self.cases.values())).config)
 
     def rows(self, base: C) -> Sequence[Row]:
-        """The rows of a case, whose configuration is this now."""
+        """The rows of a case, for its present configuration."""
         return self.cases[base.case].rows
 
     def runs(self, case: str, seeds: int | None = None, changes: Mapping[str, Any] | None = None) -> Sequence[C]:
@@ -61,7 +61,7 @@ class Study(ABC, Generic[C]):
 
         Args:
             case: name of the case.
-            seeds: how many, where draws are random; None: as many as the study deems enough.
+            seeds: number of seeds where a case has random draws; None: the study's default.
             changes: of the case, nested; rows are made of the changed case.
 
         Raises:
@@ -74,7 +74,7 @@ class Study(ABC, Generic[C]):
         return [run for _, runs in made for run in runs]
 
     def shows(self, config: C) -> bool:
-        """Whether a run of the full study keeps its log and is drawn; the others leave their metrics only."""
+        """Whether a run of the full study keeps its log and gets figures; of other runs only the metrics are kept."""
         case = self.cases.get(config.case)
         row = None if case is None else case.row_of(config)
         shown = not config.variant if row is None or row.shown is None else row.shown
@@ -94,7 +94,7 @@ class Study(ABC, Generic[C]):
         return metrics if case is None else case.beside(config, metrics)
 
     def verdict(self, config: C, metrics: Sequence[Metric]) -> str | None:
-        """Why a run that reached its end counts as failed all the same; None if it does not."""
+        """The reason why a run that reached its end still counts as failed; None if it does not."""
         return None
 
     @abstractmethod
@@ -102,7 +102,7 @@ class Study(ABC, Generic[C]):
         """Draws one run."""
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
-        """Draws what only several runs together show: the figures of each case of which there are runs."""
+        """Figures of several runs together: the figures of each case that has runs."""
         made: dict[str, Figure] = {}
         for name, case in self.cases.items():
             found = [result for result in results if result.config.case == name]
@@ -111,6 +111,6 @@ class Study(ABC, Generic[C]):
         return [save(figure, folder / f"{name}.png") for name, figure in made.items()]
 
     def search(self, controller: str, case: str | None = None) -> ParameterSearch:
-        """How the parameters of a controller are searched, on the robot and with the delays of a case (None: of the
-        study's choice). Raises ConfigError if the study does not say."""
+        """How the parameters of a controller are searched, on the robot and with the delays of a case (None: the
+        study's default). Raises ConfigError if the study has no search."""
         raise ConfigError(f"study {self.name!r} cannot be tuned; a study can if it overrides `Study.search`")

@@ -1,4 +1,4 @@
-"""What every run of every study is configured by."""
+"""Configuration that all runs of all studies share."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ MOST_STEPS = 10**8
 """of a run, of the control and of the physics"""
 
 MOST_STEPS_PER_PERIOD = 1000
-"""of the physics: between two commands; a run with more of them does not end while anyone waits"""
+"""of the physics, between two commands; with more, a run would take too long"""
 
 
 @dataclass(frozen=True)
 class Dial:
-    """Something of a task that a person may turn while it runs, by a factor."""
+    """A quantity of a task that a user may scale while it runs."""
 
     name: Literal["force", "speed"]
     unit: str
     value: float
-    """as the task asks for it; above zero"""
+    """value in the task; above zero"""
     high: float
-    """what its limits allow"""
+    """largest value within the task's limits"""
 
 
 class CaseConfig(Config):
-    """What every case of every study has."""
+    """Fields of every case of every study."""
 
     case: str = Field(description="name of the case")
     controller: str = Field(description="name of the controller")
@@ -46,16 +46,16 @@ class CaseConfig(Config):
     )
     rotor_inertia: RotorInertia = None
     estimation: Estimation = Estimation()
-    seed: int = Field(default=0, ge=0, description="of every random draw")
+    seed: int = Field(default=0, ge=0, description="seed of every random draw")
     duration: float = quantity(..., "s", "length of the run", gt=0.0)
     joint_limits: JointLimitsConfig | None = Field(
-        default=None, description="springs that keep the joints off their limits, round any controller; none: without"
+        default=None, description="springs at the joint limits, around any controller; none: without"
     )
     variant: str = Field(
-        default="", description="what distinguishes this run from others of the same case and controller"
+        default="", description="label that distinguishes this run from others of the same case and controller"
     )
     own_metrics: tuple[str, ...] = Field(
-        default=(), description="metrics beside the study's: names, my_module:metric or my_file.py:metric"
+        default=(), description="additional metrics: names, my_module:metric or my_file.py:metric"
     )
     log_scene: bool = Field(
         default=True, description="whether the log holds frames, shapes, paths and forces for 3-D views, at 30 Hz"
@@ -73,22 +73,22 @@ class CaseConfig(Config):
 
     @property
     def control_by_name(self) -> bool:
-        """Whether `control` holds a table for each controller, by its name; otherwise it is of the one that runs."""
+        """Whether `control` has a table for each controller, by name; otherwise it belongs to the one that runs."""
         return False
 
     @property
     def clock(self) -> Mapping[str, float]:
-        """Name → s of the steps that a run is made of; a run that would not end for years is refused by them."""
+        """Name → s of the time steps of a run; with them a run with too many steps is refused."""
         return {}
 
     @property
     def windows(self) -> Mapping[str, tuple[float, float]]:
-        """What is measured → s, begin and end of the time in which it is; see `check_windows`."""
+        """Metric → begin and end of its time window, s; see `check_windows`."""
         return {}
 
     @property
     def dials(self) -> tuple[Dial, ...]:
-        """What of the task may be turned while it runs."""
+        """Quantities of the task that may be scaled while it runs."""
         return ()
 
     @model_validator(mode="after")
@@ -107,7 +107,7 @@ class CaseConfig(Config):
 
 
 def check_windows(config: CaseConfig) -> None:
-    """Raises ConfigError if something would be measured at a time that is not part of the run."""
+    """Raises ConfigError if a time window is not part of the run."""
     for name, (begin, end) in config.windows.items():
         if not (0.0 <= begin < min(end, config.duration)):
             raise ConfigError(

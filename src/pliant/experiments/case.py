@@ -1,4 +1,4 @@
-"""A case of a study as one value: what runs, in which rows and draws, and what stands beside its numbers."""
+"""A case of a study as one value: its runs, rows and draws, and the paper's numbers and targets."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ C = TypeVar("C", bound=CaseConfig)
 Changes = Mapping[str, Any]
 """nested, as `merged` takes them"""
 Draws = Callable[[Any, "int | None"], Sequence[Changes]]
-"""configuration of a row, seeds that were asked for (None: as many as usual) → what differs between its runs"""
+"""configuration of a row, requested number of seeds (None: the default) → changes of each run"""
 _NONE: Mapping[str, Any] = {}
 
 
@@ -38,16 +38,16 @@ def seeded(usual: int) -> Draws:
 
 @dataclass(frozen=True)
 class Row:
-    """What one row of a case's table changes, what it is called, and where it stands in a figure."""
+    """One row of a case's table: its changes, its label, and its place in a figure."""
 
     label: str = ""
-    """tells rows of one controller apart; it is a name and is never taken apart again"""
+    """distinguishes rows of one controller; it is a name and is not parsed"""
     controller: str | None = None
     """None: the case's"""
     changes: Changes | Callable[[Any], Changes] = field(default_factory=dict[str, Any])
     """of the case's configuration, or how they follow from it"""
     value: float | None = None
-    """where the row stands along the axis of the case's figure; None: it is not on it"""
+    """value of the row on the axis of the case's figure; None: it is not in the figure"""
     group: tuple[str, ...] = ()
     """which of several curves of the figure the row belongs to"""
     paper: Mapping[str, float] = field(default_factory=dict[str, float])
@@ -57,10 +57,10 @@ class Row:
     draws: Draws | None = None
     """None: the case's"""
     shown: bool | None = None
-    """whether its first run keeps its log and is drawn; None: if it has no label"""
+    """whether its first run keeps its log and gets figures; None: only if it has no label"""
 
     def changed(self, base: CaseConfig) -> Changes:
-        """What the row sets, of a case as it is now."""
+        """The changes of the row, for the present configuration of a case."""
         own = self.changes(base) if callable(self.changes) else self.changes
         return own if self.controller is None else {**own, "controller": self.controller}
 
@@ -76,7 +76,7 @@ class Pair:
     metric: str
     """of both rows"""
     label: str
-    """of the row that it is shown with"""
+    """label of the row in which it is shown"""
     against: str
     """label of the other row"""
     absolute: bool = False
@@ -86,7 +86,7 @@ class Pair:
     """controller → bound"""
 
     def metrics(self, here: Sequence[Result], there: Sequence[Result]) -> list[Metric]:
-        """One value a pair of runs of one controller; failed runs have none."""
+        """One value per pair of runs of one controller; failed runs have none."""
         partners = {run.config.seed: run for run in there if run.failure is None}
         found: list[Metric] = []
         for run in here:
@@ -109,21 +109,21 @@ class Pair:
 
 @dataclass(frozen=True)
 class PaperTable:
-    """A table as the paper prints it: a metric a line, a controller a column, its numbers beside ours."""
+    """A table as in the paper: a line per metric, a column per controller, the paper's numbers next to ours."""
 
     title: str
     metrics: Mapping[str, str]
     """name → heading"""
     label: str = ""
-    """of the rows that it is of"""
+    """labels of its rows"""
 
 
 @dataclass(frozen=True)
 class Case(Generic[C]):
-    """A case: all that a study knows of it, in one place."""
+    """A case: everything that defines it, in one place."""
 
     config: C
-    """what `pliant run` does"""
+    """the configuration that `pliant run` uses"""
     rows: Sequence[Row] = (Row(),)
     """of the full study"""
     draws: Draws = once
@@ -134,14 +134,14 @@ class Case(Generic[C]):
     targets: Mapping[str, float] = field(default_factory=dict[str, float])
     """metric → its bound, in every row of the controller that is judged"""
     alone: str = ""
-    """label of the row whose numbers stand beside a run of the case by itself"""
+    """label of the row whose numbers are shown with a single run of the case"""
     pairs: Sequence[Pair] = ()
     tables: Sequence[PaperTable] = ()
     figures: Sequence[Callable[[Case[Any], Sequence[Result]], Mapping[str, Figure]]] = ()
     """case, its results → name of a file → figure"""
 
     def row_of(self, config: CaseConfig) -> Row | None:
-        """The row that a run belongs to; None if it is of no row."""
+        """The row that a run belongs to; None if it belongs to none."""
         for label in (config.variant, self.alone) if not config.variant else (config.variant,):
             named = [row for row in self.rows if row.label == label]
             for controller in (config.controller, None):
@@ -151,7 +151,7 @@ class Case(Generic[C]):
         return None
 
     def beside(self, config: CaseConfig, metrics: Sequence[Metric]) -> tuple[Metric, ...]:
-        """The metrics of a run with the paper's number and the target, where there are some that they lack."""
+        """The metrics of a run, completed by the paper's numbers and the targets."""
         row = self.row_of(config)
         judged = self.judged in (None, config.controller)
         paper = {**self.paper, **(row.paper if row else _NONE)}
@@ -167,7 +167,7 @@ class Case(Generic[C]):
 
 
 def row_runs(base: C, row: Row, draws: Draws, seeds: int | None) -> list[C]:
-    """Every run of one row of a case as it is now."""
+    """Every run of one row, for the present configuration of a case."""
     config = merged(base, {**row.changed(base), "variant": row.label})
     return [merged(config, changes) for changes in (row.draws or draws)(base, seeds)]
 

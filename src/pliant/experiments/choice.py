@@ -1,4 +1,4 @@
-"""What a user means by a study's name or a file, a case, and changes."""
+"""Resolves the name of a study or a file, a case and changes to the configuration of a run."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from pliant.experiments.repeat import from_config, from_log, is_whole
 from pliant.tasks.task import Task
 
 Layer = tuple[str, Mapping[str, Any]]
-"""where values come from, for people, and the values, nested"""
+"""origin of values as text, and the values, nested"""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """One run that was asked for."""
+    """One requested run."""
 
     study: Study[Any]
     config: CaseConfig
     base: str
-    """where values come from that no layer gives and that differ from the defaults, for people"""
+    """origin, as text, of values that no layer gives and that differ from the defaults"""
     layers: tuple[Layer, ...]
-    """what was laid over the case, the last of which wins"""
+    """changes of the case in order; the last one wins"""
 
 
 def chosen(
@@ -46,11 +46,11 @@ def chosen(
         case: of the study; None: the file's, or the study's first.
         overrides: those that are None count as not given.
         changes: nested.
-        names: what a user calls the last two.
+        names: origin of the last two, as text.
 
     Raises:
         ConfigError: an unknown study, case or key, or a value that breaks a rule.
-        OutputError: a file that ends in `.mcap` is no log.
+        OutputError: a file that ends in `.mcap` is not a log.
     """
     over = ((names[0], _given(overrides)), (names[1], changes))
     if isinstance(target, Task):

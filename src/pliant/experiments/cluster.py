@@ -1,5 +1,4 @@
-"""Tasks done by the workers of a running dask scheduler. A server that is something else, or that goes away, is one
-sentence."""
+"""Runs tasks on the workers of a running dask scheduler. Connection errors become one sentence."""
 
 from __future__ import annotations
 
@@ -23,11 +22,11 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 R = TypeVar("R")
-_KNOCK, _ANSWER = 2.0, 3.0  # s for a scheduler's port to say what it is, and for the scheduler to answer
-_WORKERS = 6.0  # s for the first worker to report: they may have been started together with the scheduler
-_VERSION = 3.0  # s for all workers to import pliant and say its version
-_LOOK = 0.2  # s between two looks for Ctrl-C
-_ALIVE, _GONE = 2.0, 8.0  # s between two looks whether scheduler and workers are there, and until they count as gone
+_KNOCK, _ANSWER = 2.0, 3.0  # s, time limit for the first bytes of a scheduler's port, and for the scheduler's answer
+_WORKERS = 6.0  # s, time limit for the first worker, which may have been started together with the scheduler
+_VERSION = 3.0  # s, time limit for all workers to import pliant and report its version
+_LOOK = 0.2  # s between two checks for Ctrl-C
+_ALIVE, _GONE = 2.0, 8.0  # s between two checks of scheduler and workers, and until they count as lost
 _GREETING = range(16, 1 << 16)  # bytes of dask's first message
 
 
@@ -37,10 +36,10 @@ def connected(scheduler: str, interrupted: threading.Event) -> Generator[Pool]:
 
     Args:
         scheduler: its address, `tcp://HOST:PORT`.
-        interrupted: set when the user asked to stop: what ended is handed out, then KeyboardInterrupt is raised.
+        interrupted: set when the user asked to stop: finished tasks are returned, then KeyboardInterrupt is raised.
 
     Raises:
-        ConfigError: what is there does not answer as a dask scheduler does, has no workers, or another pliant.
+        ConfigError: the server is not a dask scheduler, has no workers, or another version of pliant.
         MissingExtraError: dask is not installed.
     """
     host, port = _address(scheduler)
@@ -54,7 +53,7 @@ def connected(scheduler: str, interrupted: threading.Event) -> Generator[Pool]:
     try:
         _knock(host, port)
         client = Client(scheduler, timeout=_ANSWER, set_as_default=False)
-    except Exception as error:  # whatever dask makes of a server that is something else
+    except Exception as error:  # any error of dask with a server of another kind
         why = str(error).partition("\n")[0] or type(error).__name__
         raise ConfigError(f"no dask scheduler answers at {scheduler} ({why}); `dask scheduler` starts one") from None
     try:
@@ -67,7 +66,7 @@ def connected(scheduler: str, interrupted: threading.Event) -> Generator[Pool]:
         _check_versions(client, scheduler)
         yield _DaskPool(client, scheduler, interrupted)
     finally:
-        with suppress(TimeoutError):  # nobody is there to say goodbye to
+        with suppress(TimeoutError):  # the scheduler may be gone already
             client.close(timeout=_KNOCK)
 
 
@@ -78,7 +77,7 @@ class _DaskPool:
 
     def __call__(self, function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
         ended: SimpleQueue[Future[Any]] = SimpleQueue()
-        waiting: dict[object, tuple[int, Future[Any]]] = {}  # a future that nobody holds is forgotten by the scheduler
+        waiting: dict[object, tuple[int, Future[Any]]] = {}  # the scheduler forgets a future without a reference
         for index, task in enumerate(tasks):
             future = self._client.submit(function, task, pure=False)
             waiting[future.key] = index, future
@@ -91,11 +90,11 @@ class _DaskPool:
                 yield index, self._outcome(future)
         finally:
             if waiting and self._client.status == "running":
-                with suppress(OSError, TimeoutError):  # nobody is there any more
+                with suppress(OSError, TimeoutError):  # the scheduler is gone
                     self._client.cancel([future for _, future in waiting.values()], force=True)
 
     def _next(self, ended: SimpleQueue[Future[Any]]) -> Future[Any]:
-        """The next task that ended. Ctrl-C counts once everything that ended was handed out."""
+        """The next finished task. Ctrl-C takes effect after all finished tasks have been returned."""
         while True:
             try:
                 return ended.get(timeout=0.001 if self._interrupted.is_set() else _LOOK)
@@ -107,8 +106,8 @@ class _DaskPool:
     def _outcome(self, future: Future[Any]) -> Any:
         """What a task returned. A task whose worker dies is started again by the scheduler, three times.
 
-        What it returned stays with its worker until it is fetched; a worker that dies in between makes the task one
-        that has not ended, and the scheduler waits for another worker as long as it takes.
+        The result stays with the worker until it is fetched; if the worker dies before, the task counts as not
+        finished, and the scheduler waits for another worker without a time limit.
         """
         from distributed import KilledWorker
 
@@ -131,7 +130,7 @@ class _DaskPool:
         return Lost(f"the worker could not run it: {type(error).__name__}: {error}")
 
     def _check_alive(self) -> None:
-        """Raises RunFailedError if the scheduler or all its workers have not been there for a while."""
+        """Raises RunFailedError if the scheduler or all its workers have been lost for a while."""
         now = time.monotonic()
         if now < self._looked + _ALIVE:
             return
@@ -140,7 +139,7 @@ class _DaskPool:
             try:
                 client: Any = self._client  # its `scheduler` is untyped
                 workers = len(client.sync(client.scheduler.identity, callback_timeout=_ALIVE)["workers"])
-            except Exception:  # a connection that breaks ends in many ways
+            except Exception:  # a broken connection raises various errors
                 workers = None
         self._looked = time.monotonic()
         if workers:
@@ -150,7 +149,7 @@ class _DaskPool:
             raise self._gone(what, "went away")
 
     def _gone(self, what: str, happened: str) -> RunFailedError:
-        return RunFailedError(f"{what} {self._scheduler} {happened}; what had ended until then is kept")
+        return RunFailedError(f"{what} {self._scheduler} {happened}; what had finished before is kept")
 
 
 def _address(scheduler: str) -> tuple[str, int]:
@@ -162,8 +161,8 @@ def _address(scheduler: str) -> tuple[str, int]:
 
 
 def _knock(host: str, port: int) -> None:
-    """Raises OSError unless what listens there speaks first, in the way dask does: dask's own client would wait long
-    for anything else, or believe any length that it is told."""
+    """Raises OSError unless the server sends first, as dask does: dask's own client would wait long for another server,
+    or accept any message length."""
     until = time.monotonic() + _KNOCK
     with socket.create_connection((host, port), timeout=_KNOCK) as line:
         (length,) = struct.unpack("<Q", _received(line, 8, until))
@@ -184,11 +183,11 @@ def _received(line: socket.socket, count: int, until: float) -> bytes:
 
 def _check_versions(client: Client, scheduler: str) -> None:
     try:
-        run: Any = client.run  # what it does with the limit of time is untyped
+        run: Any = client.run  # its time limit is untyped
         found: dict[str, str] = run(_version, callback_timeout=_VERSION)
     except TimeoutError:
         raise ConfigError(f"the workers of {scheduler} do not answer; start them again") from None
-    except Exception as error:  # whatever a foreign worker makes of it
+    except Exception as error:  # any error of a foreign worker
         raise ConfigError(
             f"the workers of {scheduler} cannot import pliant {__version__}: {type(error).__name__}: {error}"
         ) from None
@@ -202,7 +201,7 @@ def _version() -> str:
 
 
 def _quiet() -> None:
-    """Dask's log goes to standard error, amid the progress bar: what matters of it is in our own sentences."""
+    """Silences dask's log, which would disturb the progress bar; pliant reports what matters."""
     names = ("distributed", "distributed.client", "distributed.core", "distributed.comm", "tornado.application")
     for name in names:
         logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -1,4 +1,4 @@
-"""What a user's `--set` may change of a case."""
+"""Which keys of a case `--set` may change."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pliant.configuration import parse_assignments
 from pliant.errors import ConfigError
 
 IDENTITY = ("case", "study", "variant")
-"""keys that say which run it is: tables and files are named after them"""
+"""keys that identify a run: tables and files are named after them"""
 
 
 def assigned(assignments: Iterable[str]) -> dict[str, Any]:

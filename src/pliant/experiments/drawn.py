@@ -1,4 +1,4 @@
-"""What there is to draw of a run that goes on, or of one that a log holds."""
+"""Robot and scene to draw, of a running experiment or of a log."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from pliant.telemetry.scene_topics import DrawnScene
 
 
 def simulated(plant: Any) -> MujocoPlant | None:
-    """The simulated robot in a plant, beneath whatever wraps it; None: there is none."""
+    """The simulated robot inside a plant and its wrappers; None: there is none."""
     while not isinstance(plant, MujocoPlant) and hasattr(plant, "inner"):
         plant = plant.inner
     return plant if isinstance(plant, MujocoPlant) else None
 
 
 def drawn_scene(experiment: Experiment) -> DrawnScene:
-    """What 3-D views show of a run: robot and scene of a simulation, of any other plant the robot alone."""
+    """The scene for 3-D views of a run: robot and scene of a simulation; for other plants the robot alone."""
     physics, robot = simulated(experiment.plant), experiment.robot
     return DrawnScene(spec_from_robot(robot).compile() if physics is None else physics.model, robot.n)
 
 
 def drawn_log(log: Log) -> tuple[DrawnScene, Robot, Scene | None]:
-    """Model, robot and scene of a logged run; where its study is not here, the robot alone.
+    """Model, robot and scene of a logged run; where its study is not available, the robot alone.
 
     Raises:
         RobotError: the robot of the log is not here, or has other joints.
@@ -42,7 +42,7 @@ def drawn_log(log: Log) -> tuple[DrawnScene, Robot, Scene | None]:
         if physics is not None:
             return DrawnScene(physics.model, built.robot.n), built.robot, physics.scene
     except PliantError:
-        pass  # a study or task that is not here, or a log of another version: its configuration is not today's
+        pass  # the study or task is not available, or the log is of a version with another configuration
     robot = Robot.load(info.robot)
     if log["measurement/q"].shape[1] != robot.n:
         joints = log["measurement/q"].shape[1]

@@ -1,4 +1,4 @@
-"""One sweep at a time in a folder."""
+"""Locks a folder for one sweep at a time."""
 
 from __future__ import annotations
 
@@ -17,8 +17,7 @@ FILE = ".sweep.lock"
 
 @contextmanager
 def locked(folder: Path) -> Generator[None]:
-    """Holds a folder for this process until the block, or the process, ends: however it ends, nothing is left to clear
-    away.
+    """Locks a folder for this process until the block, or the process, ends. No stale lock is left behind.
 
     Raises:
         OutputError: another process holds it (which one), or it cannot be locked.
@@ -56,7 +55,7 @@ def _take(path: Path) -> int:
 
 
 def _same(file: int, path: Path) -> bool:
-    """Whether the file that was locked is the one of that name, and not one that its holder has just removed."""
+    """Whether the locked file is still the one at that path; its last holder may just have removed it."""
     try:
         return os.fstat(file).st_ino == path.stat().st_ino
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""A controller's model that is wrong about the robot: what every model-based controller must bear."""
+"""Random errors of a controller's robot model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pliant.robot import Robot
 
 
 def with_mass_error(robot: Robot, share: float, rng: np.random.Generator) -> Robot:
-    """The robot as a controller believes it: every link's mass off by a share of its own.
+    """The robot as a controller believes it: each link's mass is changed by a random share.
 
     Mass and inertia of a link are scaled by the same factor, drawn uniformly from 1 ± share; centres of mass, rotors
     and kinematics stay. The plant keeps the robot that was given.

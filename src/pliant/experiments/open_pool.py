@@ -1,4 +1,4 @@
-"""Opens the place where the tasks of a sweep are done: this process, processes of its own, or a running scheduler."""
+"""Opens a pool for the tasks of a sweep: this process, child processes, or a running scheduler."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pliant.errors import ConfigError
 from pliant.experiments.pool import Pool, in_this_process
 
 MOST_JOBS = 1024
-"""processes of one command: more is a slip of the keyboard"""
+"""largest number of processes of one command; more is taken for a typing error"""
 
 
 @contextmanager

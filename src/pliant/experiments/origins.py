@@ -1,4 +1,4 @@
-"""Every value of a run: its unit, and where it comes from."""
+"""Every value of a run with its unit and origin."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Origin:
     """One value of a run."""
 
     key: str
-    """dotted, as `--set` wants it"""
+    """dotted key, as for `--set`"""
     value: Any
     unit: str
     origin: str
@@ -35,16 +35,16 @@ class Origin:
 
     @property
     def shown(self) -> str:
-        """The value as `--set` would take it, shortened where it is long."""
+        """The value as `--set` takes it, shortened if it is long."""
         text = json.dumps(to_jsonable_python(self.value), ensure_ascii=False)
         return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
 
 def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]:
-    """Every value of a run, the controller's as they were derived for it.
+    """Every value of a run, with the derived parameters of the controller.
 
     Args:
-        choice: what was asked for.
+        choice: the requested run.
         parameters: of the controller, as it was built; None: not known.
     """
     config = choice.config
@@ -88,7 +88,7 @@ def leaves(
 
     Args:
         config: whose values.
-        default: whose values are the defaults; None: what the fields say.
+        default: whose values are the defaults; None: those of the fields.
         above: parts of the key in front of it.
     """
     for name, about in type(config).model_fields.items():

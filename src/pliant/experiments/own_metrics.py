@@ -46,7 +46,7 @@ def find_metric(name: str) -> OwnMetric:
 
 
 def own_metrics(names: Sequence[str], config: Any, log: Log) -> tuple[Metric, ...]:
-    """What a user's metrics say of a run.
+    """The values of a user's metrics for a run.
 
     Raises:
         ConfigError: one fails, or returns something else than metrics.
@@ -60,7 +60,7 @@ def _measured(name: str, config: Any, log: Log) -> list[Metric]:
         metrics = [found] if isinstance(found, Metric) else list(found)
     except ConfigError:
         raise
-    except (Exception, SystemExit) as error:  # whatever somebody's code makes of a log
+    except (Exception, SystemExit) as error:  # any error of the user's code
         raise ConfigError(f"metric {name!r} fails on {log.source}: {told(error)}") from error
     if any(not isinstance(metric, Metric) for metric in metrics):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ConfigError(f"metric {name!r} must return a pliant.Metric or several, got {found!r}")

@@ -1,4 +1,4 @@
-"""What a search over a controller's parameters needs to know: which ones, on which runs, and what is good."""
+"""Definition of a search over a controller's parameters: ranges, runs and objective."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from pliant.experiments.base_config import CaseConfig
 from pliant.experiments.result import Result
 
 PENALTY = 1e9
-"""objective of a set of parameters with which every run fails; with some of them, that share of it"""
+"""objective of a set of parameters if every run fails; if some runs fail, that share of it"""
 
 
 @dataclass(frozen=True)
 class Range:
-    """Between which values a parameter is searched.
+    """Range in which a parameter is searched.
 
     Raises:
         ConfigError: on construction, if it is empty, or logarithmic and not above zero.
@@ -27,7 +27,7 @@ class Range:
     low: float
     high: float
     log: bool = False
-    """whether its order of magnitude matters, not its value"""
+    """whether the parameter is sampled on a logarithmic scale"""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
@@ -38,20 +38,20 @@ class Range:
 
 @dataclass(frozen=True)
 class ParameterSearch:
-    """A search. The runs should not be those of the study's table: what was tuned on is no test.
+    """A search. The runs should differ from those of the study's table, so that the table is an independent test.
 
     Raises:
         ConfigError: on construction, if there is nothing to search or the start does not fit the parameters.
     """
 
     parameters: Mapping[str, Range]
-    """dotted key of the configuration → where it is searched"""
+    """dotted key of the configuration → range"""
     runs: Sequence[CaseConfig]
-    """what every set of parameters is judged on"""
+    """runs on which every set of parameters is evaluated"""
     objective: Callable[[Sequence[Result]], float] = field(repr=False)
     """results of all the runs, none of which failed → a number, lower is better"""
     start: Mapping[str, float]
-    """today's values: tried first, so that the best is never worse"""
+    """present values; they are tried first, so that the best is never worse"""
     apply: Callable[[Mapping[str, float]], Mapping[str, Any]] | None = field(default=None, repr=False)
     """sampled numbers → nested changes of the configuration; None: each number goes to its own key"""
 
@@ -71,7 +71,7 @@ class ParameterSearch:
         return nested(values) if self.apply is None else self.apply(values)
 
     def judge(self, results: Sequence[Result]) -> float:
-        """The objective; large but finite where runs failed or it is not a number, larger the more of them failed."""
+        """The objective; large but finite where runs failed or it is not a number, larger the more runs failed."""
         failed = sum(result.failure is not None for result in results)
         if failed:
             return PENALTY * failed / len(results)

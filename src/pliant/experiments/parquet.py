@@ -1,4 +1,4 @@
-"""Parquet files that are whole or not there, and that know who wrote them."""
+"""Parquet files that are written atomically, with metadata and a digest."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _KEY = b"pliant"
 
 
 def write_parquet(path: Path, table: pa.Table, about: Mapping[str, Any]) -> None:
-    """Writes a table whole or not at all: the old file stays until the new one is complete.
+    """Writes a table atomically: the old file stays until the new one is complete.
 
     Args:
         path: the file.
         table: its rows.
-        about: kept in the file's schema metadata as JSON, beside the version of pliant and a digest of everything.
+        about: stored in the file's schema metadata as JSON, with the version of pliant and a digest of everything.
 
     Raises:
         OutputError: it cannot be written.
@@ -51,8 +51,8 @@ def read_parquet(path: Path) -> tuple[pa.Table, dict[str, Any]]:
         The rows, and what the file says about itself.
 
     Raises:
-        OutputError: it does not exist, is damaged, is not one of pliant's, or this version of pliant wrote it and it
-            was changed since.
+        OutputError: it does not exist, is damaged, is not one of pliant's, or was changed since this version of pliant
+            wrote it.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq

@@ -1,4 +1,4 @@
-"""What a place is where the tasks of a sweep are done, and the simplest one: this process."""
+"""Base class of pools for the tasks of a sweep, and the simplest one: this process."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Pool(Protocol):
     """Does tasks."""
 
     def __call__(self, function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
-        """Yields the index of each task with what the function returned, in the order in which they end."""
+        """Yields the index of each task with the result of the function, in the order in which they finish."""
         ...
 
 
 def in_this_process(function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
-    """One after the other, without any other process."""
+    """Runs the tasks one after the other, in this process."""
     for index, task in enumerate(tasks):
         yield index, function(task)

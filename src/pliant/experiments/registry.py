@@ -1,4 +1,4 @@
-"""The studies there are, by name."""
+"""The studies by name."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _MODULES = {
     "polishing": "pliant.studies.polishing",
     "haptic": "pliant.studies.haptic",
 }
-"""name → module with a `STUDY`; imported when it is asked for"""
+"""name → module with a `STUDY`; imported on first use"""
 _TASKS = "pliant.studies.task.study"
-"""module of the studies that task files are"""
+"""module of the studies that are made of task files"""
 
 
 def study_names() -> list[str]:
@@ -40,10 +40,11 @@ def run_of(name: str, values: Mapping[str, Any]) -> tuple[Study[Any], CaseConfig
 
 
 def study_of_run(name: str, config: CaseConfig) -> Study[Any]:
-    """The study of one run; of a task its configuration says all, wherever its file is now.
+    """The study of one run; a task is fully defined by its configuration, without its file.
 
     Raises:
-        ConfigError: a configuration that is no task's.
+        ConfigError: the
+    configuration is not of a task.
     """
     if name in _MODULES:
         return get_study(name)
@@ -52,7 +53,7 @@ def study_of_run(name: str, config: CaseConfig) -> Study[Any]:
 
 
 def study_of_task(task: Task, name: str = "task") -> Study[Any]:
-    """The study of a task that is a value: its case has that name."""
+    """The study of a task given as a value; its case has the given name."""
     found: Study[Any] = importlib.import_module(_TASKS).of_value(task, name)
     return found
 

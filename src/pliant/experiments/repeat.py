@@ -81,7 +81,7 @@ def _nones(values: Mapping[str, Any], above: tuple[str, ...] = ()) -> Iterator[t
 
 
 def _without(value: Any) -> Any:
-    """The same without what is none: TOML has no word for it."""
+    """The same without values that are None: TOML has no null."""
     if isinstance(value, Mapping):
         return {key: _without(inner) for key, inner in value.items() if inner is not None}
     return [_without(inner) for inner in value] if isinstance(value, list | tuple) else value

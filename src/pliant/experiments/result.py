@@ -1,4 +1,4 @@
-"""What came out of one run."""
+"""Result of one run. !!"""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pliant.telemetry.summary import Metric
 
 @dataclass(frozen=True)
 class Result:
-    """What came out of one run."""
+    """Result of one run."""
 
     config: CaseConfig
     metrics: tuple[Metric, ...]

@@ -29,7 +29,7 @@ _METRICS = TypeAdapter(tuple[Metric, ...])
 
 @dataclass(frozen=True)
 class Run:
-    """One run of a sweep: what came out of it, and how it went."""
+    """One run of a sweep: its result and status."""
 
     result: Result
     status: Status
@@ -44,19 +44,19 @@ class Run:
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for; kept in the file so that a sweep can be resumed from the file alone."""
+    """The requested sweep; stored in the file so that a sweep can be resumed from the file alone."""
 
     study: str
     cases: tuple[str, ...] = ()
     """empty: all"""
     seeds: int | None = None
-    """per case with random draws; None: as many as the study deems enough"""
+    """per case with random draws; None: the study's default"""
     assignments: tuple[str, ...] = ()
     """`key=value`"""
     logs: bool = False
     """whether every run keeps its log"""
     controllers: tuple[str, ...] = ()
-    """each runs every case, on the same seeds; empty: those of the study"""
+    """each runs every case with the same seeds; empty: those of the study"""
 
 
 class ResultStore:
@@ -66,7 +66,7 @@ class ResultStore:
     def __init__(self, folder: Path, request: Request, asked: Sequence[CaseConfig]) -> None:
         """
         Args:
-            folder: where the file goes; one that is there and is not gone on with is kept as `results.parquet.old`.
+            folder: where the file goes; an existing file that is not continued is kept as `results.parquet.old`.
             request: what was asked for.
             asked: every run of the sweep, in the order of the rows.
         """
@@ -78,16 +78,16 @@ class ResultStore:
 
     @property
     def runs(self) -> list[Run]:
-        """What was added, in the order in which it was asked for."""
+        """The runs that were added, in the order of the request."""
         return [self._runs[place] for place in sorted(self._runs)]
 
     def begin(self) -> None:
-        """Writes the file before the first run: even a sweep that is interrupted before it can be resumed.
+        """Writes the file before the first run: so that a sweep that is interrupted early can be resumed as well.
 
         Raises:
             OutputError: it cannot be written.
         """
-        if not self._runs and _holds_rows(self.path):  # a study that is started anew must not eat an earlier one's
+        if not self._runs and _holds_rows(self.path):  # a new start of a study must not destroy earlier results
             self.path.replace(self.path.with_suffix(".parquet.old"))
         self._write()
 
@@ -107,7 +107,7 @@ class ResultStore:
 
 
 def _holds_rows(path: Path) -> bool:
-    """Whether there is a file that somebody may want back; one that cannot be read counts."""
+    """Whether there is a file with results that may be needed; a file that cannot be read counts."""
     if not path.exists():
         return False
     try:
@@ -117,7 +117,7 @@ def _holds_rows(path: Path) -> bool:
 
 
 def key(config: CaseConfig) -> str:
-    """What makes a run the same run: its whole configuration."""
+    """Key that identifies a run: its whole configuration."""
     return config.model_dump_json()
 
 
@@ -144,7 +144,7 @@ def read_results(path: Path) -> tuple[Request, list[Run]]:
         request = TypeAdapter(Request).validate_python(about)
         kind = get_study(request.study).config_type
         return request, [_run(row, kind, path.parent) for row in table.to_pylist()]
-    except Exception as error:  # an edited or damaged file may hold anything
+    except Exception as error:  # an edited or damaged file may contain anything
         why = " ".join(str(error).split())
         raise OutputError(f"{path} does not hold the results of a study ({type(error).__name__}: {why})") from None
 
@@ -173,7 +173,7 @@ def _row(study: str, run: Run, folder: Path) -> dict[str, Any]:
     result = run.result
     config = result.config
     files = {"log": _inside(result.log, folder), "figures": [_inside(figure, folder) for figure in result.figures]}
-    about = [{**asdict(metric), "value": _column(metric)} for metric in result.metrics]  # each value stands once
+    about = [{**asdict(metric), "value": _column(metric)} for metric in result.metrics]  # each value is stored once
     exact = {"metrics": about, **files}
     columns = {_column(metric): metric.value for metric in result.metrics}
     return columns | {
@@ -193,7 +193,7 @@ def _row(study: str, run: Run, folder: Path) -> dict[str, Any]:
 
 
 def _run(row: dict[str, Any], kind: type[CaseConfig], folder: Path) -> Run:
-    """Raises whatever it meets where a row is not as `_row` makes it."""
+    """May raise any error if a row is not as `_row` makes it."""
     exact = json.loads(row["result"])
     log = None if exact["log"] is None else folder / exact["log"]
     figures = tuple(folder / name for name in exact["figures"])
@@ -213,7 +213,7 @@ def _column(metric: Metric) -> str:
 
 
 def _inside(path: Path | None, folder: Path) -> str | None:
-    """A path as the folder knows it, so that the folder can be moved."""
+    """A path relative to the folder, so that the folder can be moved."""
     if path is None:
         return None
     whole, root = path.resolve(), folder.resolve()
@@ -221,6 +221,6 @@ def _inside(path: Path | None, folder: Path) -> str | None:
 
 
 def unsettled(asked: Iterable[CaseConfig], runs: Iterable[Run]) -> list[CaseConfig]:
-    """The runs that are still to be made."""
+    """The runs that are missing."""
     done = {key(run.result.config) for run in runs if run.settled}
     return [config for config in asked if key(config) not in done]

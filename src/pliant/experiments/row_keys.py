@@ -1,4 +1,4 @@
-"""Changes for a whole sweep must not touch what tells its rows apart."""
+"""Changes for a whole sweep must not change keys that distinguish its rows."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from pliant.experiments.case import Row
 Key = tuple[str, ...]
 _ONE = "`pliant run` makes one run with any value"
 _COUNTED = (("seed",), ("variant",))
-"""what every run has of its own: the case's seed is where they begin"""
+"""key with a value per run: the seeds begin with the case's seed"""
 
 
 def refuse_row_keys(
     base: CaseConfig, made: Sequence[tuple[Row, Sequence[CaseConfig]]], changes: Mapping[str, Any]
 ) -> None:
-    """Refuses changes of a key to which a row, or one of its draws, gives a value of its own: it would be lost, and the
-    rows' labels would tell what is not so.
+    """Refuses changes of a key that a row, or one of its draws, sets itself: the change would be lost, or the labels of
+    the rows would be wrong.
 
     Args:
-        base: the case as it is now.
+        base: the present configuration of the case.
         made: every row with its runs.
-        changes: nested, meant for all of them.
+        changes: nested, for all rows.
 
     Raises:
         ConfigError: a row sets one of the keys.

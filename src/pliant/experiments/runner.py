@@ -22,7 +22,7 @@ from pliant.telemetry.recorder import Recorder
 from pliant.telemetry.summary import Metric
 
 Progress = Callable[[float], None]
-"""called with the share of the run that is done, 0…1"""
+"""called with the completed share of the run, 0…1"""
 
 
 def run_case(
@@ -42,8 +42,8 @@ def run_case(
         study: the study that the configuration belongs to.
         config: what to run.
         folder: where log and figures go; None keeps the log in memory and draws nothing.
-        progress: told how far the run is.
-        observers: more watchers of the loop.
+        progress: called with the completed share.
+        observers: additional observers of the loop.
         figures: whether to draw.
         experiment: the wired loop, if the caller already built it.
         pace: makes a clock of the periods to run, for example one that follows wall time.
@@ -73,12 +73,12 @@ def run_case(
 
 
 def run_length(config: CaseConfig, experiment: Experiment) -> float:
-    """s: as configured, or until there is nothing more to do."""
+    """s: as configured, or until the task is done."""
     return config.duration if experiment.duration is None else min(config.duration, experiment.duration)
 
 
 def run_info(study: Study[Any], config: CaseConfig, experiment: Experiment) -> RunInfo:
-    """What the log says about the run."""
+    """Identity of the run for its log."""
     return RunInfo(
         study=study.name,
         case=config.case,
@@ -127,7 +127,7 @@ def _each_once(metrics: tuple[Metric, ...]) -> tuple[Metric, ...]:
 
 
 class _Reporter:
-    """Tells the progress ten times a second at most."""
+    """Reports the progress at most ten times per second."""
 
     def __init__(self, progress: Progress, ticks: int) -> None:
         self._progress, self._ticks = progress, ticks

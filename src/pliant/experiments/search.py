@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import optuna
 
 BATCH = 8
-"""parameter sets that are asked for at once. Fixed: with it, the search is the same on one process and on fifty"""
+"""parameter sets per batch. It is fixed, so that the search does not depend on the number of processes"""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Trial:
     objective: float
     """lower is better"""
     failed: int
-    """runs that did not reach their end"""
+    """number of runs that did not reach their end"""
     failure: str | None = None
-    """why the first of them did not"""
+    """failure of the first of them"""
 
 
 def find_search(study: Study[Any], controller: str, case: str | None = None) -> ParameterSearch:
@@ -42,7 +42,7 @@ def find_search(study: Study[Any], controller: str, case: str | None = None) -> 
     Raises:
         ConfigError: the study has no such controller or case, or does not say how it is tuned.
     """
-    if ":" not in controller and controller not in study.controllers:  # a class of the user's own is found by `search`
+    if ":" not in controller and controller not in study.controllers:  # a user's own class is found by `search`
         raise ConfigError(
             f"study {study.name!r} has no controller {controller!r}; {options(study.controllers, controller)}"
         )
@@ -56,7 +56,7 @@ def search(
 
     Args:
         study: name of the study that the runs belong to.
-        sought: what is searched, and on what.
+        sought: definition of the search.
         trials: how many sets.
         seed: of the search.
         pool: where the runs are made; the trials do not depend on it.
@@ -76,13 +76,13 @@ def search(
 
 
 def _tried(study: str, sought: ParameterSearch, asked: Sequence[optuna.Trial], pool: Pool) -> list[Trial]:
-    """A batch: all runs of all its trials side by side."""
+    """A batch: all runs of all its trials in parallel."""
     possible: dict[int, list[CaseConfig]] = {}
     refused: dict[int, str] = {}
     for trial in asked:
         try:
             possible[trial.number] = _configured(sought, trial.params)
-        except ConfigError as error:  # values that do not go together
+        except ConfigError as error:  # values that do not fit together
             refused[trial.number] = str(error)
     # two trials may want the same run: the start can be sampled again
     wanted = {key(config): config for configs in possible.values() for config in configs}

@@ -1,4 +1,4 @@
-"""The wiring's `SensorFilters`, from the keys of a study or a task."""
+"""`SensorFilters` from the configuration of a study or a task."""
 
 from __future__ import annotations
 

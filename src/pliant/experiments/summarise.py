@@ -1,4 +1,4 @@
-"""Results of runs → the summary of a study: the one place where runs become a row."""
+"""Results of runs → the summary of a study. Only this module combines runs into rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Many runs: one after the other, side by side in processes, or on a cluster."""
+"""Many runs: one after the other, in parallel processes, or on a cluster."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from pliant.experiments.row_keys import refuse_same_names
 from pliant.experiments.runner import run_case
 
 MOST_SEEDS = 100_000
-"""seeds per case of one sweep: more is a slip of the keyboard"""
+"""largest number of seeds per case; more is taken for a typing error"""
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ class Job:
     folder: Path | None = None
     """where log and figures go; None: metrics only"""
     logs: bool = False
-    """keep the log even if the study does not show the run"""
+    """keep the log even if the study would not keep it"""
 
 
 def asked_runs(request: Request) -> list[CaseConfig]:
-    """Every run that a request stands for, each once.
+    """Every run of a request, each once.
 
     Raises:
         ConfigError: an unknown study, case or key, a value that breaks a rule, or a key that rows set themselves.
@@ -62,13 +62,13 @@ def asked_runs(request: Request) -> list[CaseConfig]:
 def compared(
     config: CaseConfig, controllers: Sequence[str], seeds: int, changes: Mapping[str, Any] | None = None
 ) -> list[CaseConfig]:
-    """A case with each controller and the same changes, on the same seeds, from the case's own on."""
+    """A case with each controller, with the same changes and seeds, beginning with the case's own seed."""
     changed = [merged(config, {**(changes or {}), "controller": name}) for name in controllers]
     return [merged(made, {"seed": made.seed + seed}) for made in changed for seed in range(seeds)]
 
 
 def check_buildable(study_name: str, config: CaseConfig) -> None:
-    """Wires a run without running it, so that what is wrong with it is said before a sweep begins.
+    """Wires a run without running it, so that errors are found before a sweep begins.
 
     Raises:
         PliantError: it cannot be wired.
@@ -84,7 +84,7 @@ def sweep(
     pool: Pool = in_this_process,
     logs: bool = False,
 ) -> Iterator[Run]:
-    """Runs configurations and yields each run as it ends; nothing that happens to one of them ends the others.
+    """Runs configurations and yields each run as it ends; the failure of one run does not stop the others.
 
     Args:
         study_name: the study that the configurations belong to.
@@ -100,7 +100,7 @@ def sweep(
 
 
 def run_task(task: Job) -> Run:
-    """One run, in whatever process this is. An exception is a failed run with a reason, not the end of the sweep."""
+    """One run, in this process. An exception makes it a failed run with a reason and does not stop the sweep."""
     started = time.perf_counter()
     try:
         result = _run(task)
@@ -113,7 +113,7 @@ def run_task(task: Job) -> Run:
 def _run(task: Job) -> Result:
     study = study_of_run(task.study, task.config)
     shown = study.shows(task.config)
-    visible = task.folder is not None and task.folder.is_dir()  # not on a machine that does not share the folder
+    visible = task.folder is not None and task.folder.is_dir()  # not on a machine without access to the folder
     folder = task.folder if visible and (shown or task.logs) else None
     return run_case(study, task.config, folder, figures=shown)
 

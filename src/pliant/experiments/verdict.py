@@ -1,4 +1,4 @@
-"""When a run that reached its end is not a success all the same, whatever it was for."""
+"""General criteria by which a run that reached its end still counts as failed."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from pliant.spatial import Array
 from pliant.telemetry.log import Log
 
 LIMIT_TOLERANCE = math.radians(1.0)
-"""rad beyond its limit that a joint may stand; twice what a stop gives under the joint's whole torque"""
+"""rad by which a joint may exceed its limit; twice the deflection of a stop under the joint's full torque"""
 LIMIT_TOLERANCE_LINEAR = 2e-3
 """m, of joints that slide"""
 
 
 def physical_verdict(log: Log, robot: Robot) -> str | None:
-    """What makes a simulated run a failure in any study or task, in one sentence; None if nothing does.
+    """The reason why a simulated run is a failure in any study or task, in one sentence; None if it is not.
 
     - A joint passed its position limit by more than a tolerance.
     - A frame was asked for a force and no part of the robot ever touched anything.
 
     Args:
-        log: of the run; without `truth/…` nothing can be said.
+        log: of the run; without `truth/…` the result is None.
         robot: that ran.
     """
     found = [text for text in (_limit_passed(log, robot), _never_touched(log)) if text is not None]
@@ -33,7 +33,7 @@ def physical_verdict(log: Log, robot: Robot) -> str | None:
 
 
 class StartNotes:
-    """An observer that looks at the first tick: what is odd there is a warning of the run."""
+    """An observer of the first tick, which adds start hints to the warnings of the run."""
 
     def __init__(self) -> None:
         self.sentences: tuple[str, ...] | None = None
@@ -78,7 +78,7 @@ def _never_touched(log: Log) -> str | None:
         asked = float(np.linalg.norm(log[name][:, :3], axis=1).max())
         if asked > 0.0:
             frame = name.removeprefix("reference/").removesuffix("/wrench")
-            return f"never touched: frame {frame} was asked for {asked:.3g} N and the robot met nothing"
+            return f"no contact: frame {frame} should press with {asked:.3g} N and the robot touched nothing"
     return None
 
 

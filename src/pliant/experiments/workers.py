@@ -1,6 +1,7 @@
-"""Processes of this machine that do tasks, one each at a time. One that dies is replaced, and costs only its task.
+"""A pool of processes on this machine, one task each at a time. A process that dies is replaced; only its task is
+affected.
 
-`concurrent.futures` gives every task up when one process dies; here each process has a pipe of its own, so that it is
+`concurrent.futures` abandons all tasks when one process dies; here each process has a pipe of its own, so that it is
 known which task it had.
 """
 
@@ -24,7 +25,7 @@ from pliant.experiments.pool import Lost, Pool
 T = TypeVar("T")
 R = TypeVar("R")
 DEATHS = 3
-"""how often a task may take its process with it before it counts as lost"""
+"""how often the process of a task may die before the task counts as lost"""
 _LOOK = 0.2  # s between two looks for Ctrl-C
 
 
@@ -34,7 +35,7 @@ def local_workers(jobs: int, interrupted: threading.Event) -> Generator[Pool]:
 
     Args:
         jobs: how many processes.
-        interrupted: set when the user asked to stop: what ended is handed out, then KeyboardInterrupt is raised.
+        interrupted: set when the user asked to stop: finished tasks are returned, then KeyboardInterrupt is raised.
     """
     crew = _Crew(jobs, interrupted)
     try:
@@ -47,7 +48,7 @@ class _Crew:
     def __init__(self, jobs: int, interrupted: threading.Event) -> None:
         self._jobs, self._interrupted = jobs, interrupted
         self._workers: dict[Connection, _Worker] = {}
-        self._stillborn = 0  # processes in a row that died without having had a task
+        self._stillborn = 0  # consecutive processes that died without a task
 
     def __call__(self, function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
         """Raises RunFailedError if no process can be started, KeyboardInterrupt after Ctrl-C."""
@@ -61,7 +62,7 @@ class _Crew:
                     if answer is not None:
                         self._stillborn = 0
                         worker.task = None
-                        self._employ(waiting, function, tasks, left)  # it works on while the answer is dealt with
+                        self._employ(waiting, function, tasks, left)  # it works on while the answer is processed
                     else:
                         how = self._bury(worker)
                         if index is None:
@@ -91,7 +92,8 @@ class _Crew:
                 worker.give(index, pickle.dumps((function, tasks[index])))
 
     def _listen(self) -> list[_Worker]:
-        """The processes that have something to say, or died. Ctrl-C counts once all that ended was handed out."""
+        """The processes that have sent something or died. Ctrl-C takes effect after all finished tasks have been
+        returned."""
         while True:
             heard = wait(list(self._workers), timeout=0.0 if self._interrupted.is_set() else _LOOK)
             if heard:
@@ -111,8 +113,9 @@ class _Crew:
         self._stillborn += 1
         if self._stillborn >= DEATHS * self._jobs:
             raise RunFailedError(
-                f"no process for the runs can be started: {self._stillborn} ended at once ({how}); a script that sweeps"
-                " needs `if __name__ == '__main__':` around it; what had ended until then is kept"
+                f"no process for the runs can be started: {self._stillborn} ended at once ({how}); a script"
+                " with a sweep"
+                " needs `if __name__ == '__main__':` around it; what had finished before is kept"
             )
 
     def _bury(self, worker: _Worker) -> str:
@@ -121,7 +124,7 @@ class _Crew:
 
 
 class _Answer:
-    """What came back from a process; a class, since what a task returns may be None."""
+    """Answer of a process; a class, because a task may return None."""
 
     def __init__(self, content: Any) -> None:
         self.content = content
@@ -142,11 +145,11 @@ class _Worker:
 
     def give(self, index: int, message: bytes) -> None:
         self.task = index
-        with suppress(OSError):  # it died while it had nothing to do: the pipe says so next
+        with suppress(OSError):  # it died while idle: the pipe reports it next
             self.pipe.send_bytes(message)
 
     def hear(self) -> _Answer | None:
-        """What it says; None if it died."""
+        """Its message; None if it died."""
         try:
             answer = pickle.loads(self.pipe.recv_bytes())
         except (EOFError, OSError):
@@ -156,7 +159,7 @@ class _Worker:
 
     def end(self) -> str:
         """Ends the process. Returns how it had ended by itself, if it had."""
-        if self.pipe.poll():  # its end is closed, or nobody wants to know any more: it is dying
+        if self.pipe.poll():  # its end is closed, or the pool is closing
             self._process.join(1.0)
         code = self._process.exitcode
         self._process.kill()
@@ -166,8 +169,9 @@ class _Worker:
 
 
 def _serve(pipe: Connection) -> None:
-    """What a process does: tasks, until its pipe ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal sends it to all; the command ends its processes itself
+    """Main function of a process: runs tasks until its pipe is closed."""
+    # a terminal sends it to all processes; the command ends its processes itself
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_die_with_parent, daemon=True).start()
     with suppress(EOFError, OSError):
         pipe.send_bytes(pickle.dumps(None))
@@ -191,7 +195,7 @@ def _die_with_parent() -> None:
 @contextmanager
 def _shielded() -> Generator[None]:
     """Processes started in here never see Ctrl-C, and compute on one thread each."""
-    resource_tracker.ensure_running()  # it would unblock the signal where it is started
+    resource_tracker.ensure_running()  # the process would unblock the signal
     threads = os.environ.get("OMP_NUM_THREADS")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

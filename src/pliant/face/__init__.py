@@ -1,1 +1,1 @@
-"""What `import pliant` offers beside its parts: run, compare, and what they return."""
+"""`pliant.run`, `pliant.compare` and their results."""

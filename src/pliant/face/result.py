@@ -1,4 +1,4 @@
-"""What a run and a comparison give to whoever called them from Python."""
+"""Results of `pliant.run` and `pliant.compare`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _WIDTH = 140  # columns of a table as text
 
 @dataclass(frozen=True)
 class RunResult:
-    """What came out of one run."""
+    """Result of one run."""
 
     study: Study[Any] = field(repr=False)
     run: base.Result = field(repr=False)
@@ -37,7 +37,7 @@ class RunResult:
 
     @property
     def config(self) -> CaseConfig:
-        """What was run, complete."""
+        """The complete configuration of the run."""
         return self.run.config
 
     @property
@@ -47,12 +47,12 @@ class RunResult:
 
     @property
     def failure(self) -> str | None:
-        """Why it failed, in a sentence; None if it did not."""
+        """The failure as one sentence; None if it did not fail."""
         return self.run.failure
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is unsafe or odd about it."""
+        """Warnings of the run."""
         return self.run.warnings
 
     @property
@@ -65,7 +65,7 @@ class RunResult:
         return _text(self.summary)
 
     def plot(self) -> dict[str, Figure]:
-        """Name → figure: per frame its error, path and forces; torques, posture, energies. Nothing is written."""
+        """Name → figure: per frame its error, path and forces; torques, posture, energies. No file is written."""
         return figures(self.log)
 
     def __str__(self) -> str:
@@ -74,11 +74,11 @@ class RunResult:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Several controllers at the same task with the same seeds."""
+    """Several controllers on the same task with the same seeds."""
 
     study: Study[Any] = field(repr=False)
     runs: Sequence[base.Result]
-    """of every controller and seed"""
+    """results of every controller and seed"""
 
     @cached_property
     def summary(self) -> Summary:
@@ -107,7 +107,7 @@ class Comparison:
         return data_frame("polars", self.columns())
 
     def columns(self) -> dict[str, list[Any]]:
-        """The same as lists; a run without metrics has one row with none."""
+        """The same as lists; a run without metrics has one row."""
         rows = [
             (run.config.controller, run.config.seed, name, value, unit, run.failure)
             for run in self.runs

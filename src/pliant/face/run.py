@@ -44,7 +44,7 @@ def run(
         seed: of every random draw; None: the case's.
         metrics: of your own beside the study's, `my_module:metric` or `my_file.py:metric`.
         out: folder for log, figures, summary.json and config.toml; None: nothing is written.
-        changes: any other value of the configuration, nested: `duration=2.0`, `control={"horizon": 3}`, or with a
+        changes: other values of the configuration, nested: `duration=2.0`, `control={"horizon": 3}`, or with a
             dotted key `**{"control.horizon": 3}`.
 
     Returns:
@@ -75,14 +75,14 @@ def compare(
     jobs: int = 1,
     **changes: Any,
 ) -> Comparison:
-    """Runs several controllers at the same case with the same seeds.
+    """Runs several controllers on the same case with the same seeds.
 
     Args:
         what: as of `run`.
         controllers: names, `my_module:MyController` or `my_file.py:MyController`.
         case: of the study; None: its first.
         robot: catalogue name, or path of a file; None: the case's.
-        seeds: how many, from the case's own on.
+        seeds: number of seeds, beginning with the case's own.
         metrics: of your own beside the study's.
         jobs: runs at the same time, each in a process of its own. Results do not depend on it.
         changes: as of `run`; the same for every controller.
@@ -102,7 +102,7 @@ def compare(
     asked = compared(choice.config, controllers, seeds)
     for config in asked[::seeds]:
         check_windows(config)
-        study.build(config)  # what is wrong with a controller is said before anything runs
+        study.build(config)  # errors of a controller are found before anything runs
     made: dict[tuple[str, int], Any] = {}
     with open_pool(min(jobs, len(asked))) as pool:
         for done in sweep(study.name, asked, pool=pool):

@@ -1,4 +1,4 @@
-"""The guard at the border of every part of the loop: what is not a sound signal reaches no law and no robot."""
+"""The guard checks every signal between the parts of the loop; invalid signals reach neither controller nor robot."""
 
 from pliant.guard.border import PATIENCE as PATIENCE
 from pliant.guard.border import Guard as Guard

@@ -1,9 +1,9 @@
-"""The guard at the border of every part of the loop: what is not a sound signal reaches no law and no robot.
+"""The guard checks every signal between the parts of the loop; invalid signals reach neither controller nor robot.
 
-It looks at each measurement, estimate, reference and command. A tick whose signals are sound passes unchanged. In one
-whose signals are not, no part is stepped any further; the guard answers itself: the first such tick holds the last
-torque that was sent, the following ones compensate gravity with joint damping, within the limits. Once this has lasted
-`PATIENCE`, the run ends as failed. The kind of fault is in `Tick.guard`, in the log as `guard/fault`.
+It checks each measurement, estimate, reference and command. A tick with valid signals passes unchanged. In a tick with
+an invalid signal the remaining parts are not stepped, and the guard gives the command: the first such tick holds the
+last torque that was sent, the following ones compensate gravity with joint damping, within the limits. Once this has
+lasted `PATIENCE`, the run ends as failed. The kind of fault is in `Tick.guard`, in the log as `guard/fault`.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ from pliant.spatial import Array
 
 PATIENCE = 0.05  # s of faults in a row after which the run ends
 _DAMPING = 5.0  # N·m s/rad of each joint while the guard answers
-_FROZEN = 3  # equal readings in a row of a sensor whose noise says that no two are equal
-_LATE = 1.5  # periods between two readings from which the second one is late
-_ROUNDING = 1e-9  # of a torque limit; what more is beyond it is cut off and shown
+_FROZEN = 3  # consecutive equal readings of a noisy sensor that count as a fault
+_LATE = 1.5  # periods between two readings from which the second counts as late
+_ROUNDING = 1e-9  # of a torque limit; a larger excess is cut off and reported
 
 
 @dataclass(slots=True)
 class Watched:
-    """What the guard remembers. Consumed by its methods."""
+    """State of the guard. Consumed by its methods."""
 
     reading: Measurement
-    """the last sound one, as its parts may have left it"""
+    """the last valid one; other parts may have written into it"""
     q: Array
     v: Array
-    """(n,) of it, rad and rad/s, kept from parts that write into what they get"""
+    """(n,) copies of it, rad and rad/s, in case a part writes into its input"""
     torque: Array
     """(n,) the last torque sent, N·m; a copy, since a controller may use its array again"""
     n: int
     """number of joints"""
     frames: tuple[str, ...]
-    """those of the force sensors"""
+    """frames of the force sensors"""
     equal: dict[str, int] = field(default_factory=dict[str, int])
-    """signal → how many readings in a row were equal to the one before"""
+    """signal → number of consecutive readings equal to the one before"""
     estimated: float = -math.inf
     """time of the last sound estimate, s"""
     faults: int = 0
@@ -69,7 +69,7 @@ class Guard:
         robot: for limits and gravity. None: no limits are known, and the last torque is held instead of gravity's.
 
     Raises:
-        ConfigError: what the plant says of itself breaks a rule.
+        ConfigError: a property of the plant breaks a rule.
     """
 
     def __init__(self, plant: Plant[object], robot: Robot | None = None) -> None:
@@ -157,7 +157,8 @@ class Guard:
         return reading.time if math.isfinite(reading.time) else watched.reading.time
 
     def shown(self, fault: Fault, reading: Measurement, watched: Watched) -> Measurement:
-        """The measurement for observers: one of another size fits no log, so the last sound one stands for it."""
+        """The measurement for observers: one of another size does not fit into a log, so the last valid one replaces
+        it."""
         return replace(watched.reading, time=self.now(reading, watched)) if fault is Fault.SHAPE else reading
 
     def why_not(self, fault: Fault, watched: Watched) -> PliantError:
@@ -189,7 +190,7 @@ class Guard:
     # ------------------------------------------------------------------ inside
 
     def _within(self, torque: Array) -> Array:
-        """The torque itself if it keeps the limits, else what is left of it."""
+        """The torque itself if it is within the limits, else the clamped torque."""
         if self._limit is None or not np.count_nonzero(np.abs(torque) > self._bound):
             return torque
         return np.clip(torque, -self._limit, self._limit)
@@ -204,7 +205,7 @@ class Guard:
         return self._within(torque)
 
     def _frozen(self, reading: Measurement, watched: Watched) -> bool:
-        """Whether a noisy sensor has given equal readings for too long."""
+        """Whether a noisy sensor has given too many equal readings."""
         frozen = False
         for name in self._noisy:
             now = _signal(reading, name)

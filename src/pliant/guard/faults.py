@@ -1,4 +1,4 @@
-"""What can be wrong in a tick of the loop."""
+"""Faults in a tick of the loop."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Fault(IntEnum):
-    """What was wrong in a tick: the values of the channel `guard/fault`."""
+    """Fault in a tick: the values of the channel `guard/fault`."""
 
     NONE = 0
     NOT_FINITE = 1

@@ -1,4 +1,4 @@
-"""Why a loop cannot start: the rule that a part breaks before the first tick, in a sentence."""
+"""Errors at the start of a loop: the rule that a part breaks before the first tick."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _PARTS: dict[Fault, tuple[str, type[Estimate | Reference | Command], tuple[str, 
 
 
 def check_plant(plant: Plant[object]) -> None:
-    """Looks at what a plant says of itself.
+    """Checks the properties of a plant.
 
     Raises:
-        ConfigError: its period is no time, or it names a sensor or a compensation that there is not.
+        ConfigError: its period is not valid, or it names a sensor or a compensation that does not exist.
     """
     if not (math.isfinite(plant.period) and plant.period > 0.0):
         raise ConfigError(f"a plant's period must be finite and above zero, got {plant.period!r} s")
@@ -40,10 +40,10 @@ def check_plant(plant: Plant[object]) -> None:
 
 
 def check_first(reading: object, n: int | None) -> None:
-    """Looks at types and sizes of the first measurement.
+    """Checks types and sizes of the first measurement.
 
     Raises:
-        ConfigError: it is no measurement.
+        ConfigError: it is not a measurement.
         ShapeError: it does not fit n joints; None: as many as it has.
     """
     if not isinstance(reading, Measurement):

@@ -1,8 +1,8 @@
-"""Whether a signal is sound: of the right type and size, of real numbers, finite.
+"""Whether a signal is valid ("sound"): right type and size, real numbers, finite.
 
-All numbers of a signal are strung together and looked at once, since this runs in every tick: a sum of squares is
-finite if every number is, and none is so large (1e154) that its square is not. Kinds of arrays that hide numbers
-(numpy's masked ones) are not of real numbers.
+All numbers of a signal are
+concatenated and checked at once, because this runs in every tick: a sum of squares is finite if every number is finite
+and below 1e154. Kinds of arrays that hide numbers (numpy's masked ones) are not of real numbers.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from pliant.signals import Estimate, Measurement, Preview, Reference
 from pliant.spatial import Array
 
 _NOT_NUMBERS = (AttributeError, TypeError, ValueError)
-"""what a signal that is not made of arrays of numbers raises when it is looked at"""
+"""errors of a signal that is not made of arrays of numbers"""
 _SIX, _MATRIX = (6,), (3, 3)
 _OF_TASK = ((3,), _SIX, _SIX, _SIX)
 _REAL = "fiu"  # kinds of numbers
 
 
 def reading_fault(reading: Measurement, n: int, frames: tuple[str, ...]) -> Fault:
-    """What is wrong with the numbers of a measurement for n joints and force sensors at these frames."""
+    """The fault of a measurement for n joints and force sensors at these frames."""
     try:
         joints = [reading.q, reading.v, reading.torque, reading.torque_sent]
         felt = [*reading.wrenches.values()]
