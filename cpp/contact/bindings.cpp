@@ -14,6 +14,7 @@
 
 namespace nb = nanobind;
 using namespace nb::literals;
+using namespace pliant;
 using namespace pliant::contact;
 
 namespace {

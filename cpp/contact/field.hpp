@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "vec3.hpp"
+#include "../shared/vec3.hpp"
 
 namespace pliant::contact {
 

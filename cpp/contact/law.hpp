@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vec3.hpp"
+#include "../shared/vec3.hpp"
 
 namespace pliant::contact {
 

@@ -3,7 +3,7 @@
 
 #include "field.hpp"
 #include "solids.hpp"
-#include "vec3.hpp"
+#include "../shared/vec3.hpp"
 
 namespace pliant::contact {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "field.hpp"
-#include "vec3.hpp"
+#include "../shared/vec3.hpp"
 
 namespace pliant::contact {
 

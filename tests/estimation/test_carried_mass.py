@@ -13,6 +13,8 @@ from pliant.estimation import CarriedMass, JointAcceleration, Tare, WrenchEstima
 from pliant.robot import Robot, Tool
 from pliant.signals import Command, Estimate, Measurement
 from pliant.simulation import ForceSensor, MujocoPlant
+from tests.twins.estimator_chain import joint_acceleration
+from tests.twins.estimator_chain.carried_mass import SensorMotion, reading
 
 MASS, CENTER, INERTIA = 0.8, (0.015, -0.02, 0.07), (2e-3, 3e-3, 1e-3, 1e-4, -2e-4, 3e-4)  # kg, m, kg m²
 
@@ -76,19 +78,19 @@ def test_noise_on_the_velocities_is_not_a_contact_with_a_lower_cutoff(iiwa14: Ro
 @pytest.mark.parametrize("cutoff", [30.0, 200.0])
 def test_the_stated_error_of_joint_accelerations(cutoff: float) -> None:
     w, T = 2.0 * np.pi, 1e-3
-    filtered, gain = JointAcceleration(cutoff), -np.expm1(-2 * np.pi * cutoff * T)
+    how, gain = JointAcceleration(cutoff), -np.expm1(-2 * np.pi * cutoff * T)
     t = np.arange(4000) * T
-    state, out = filtered.init(0.0, np.array([w])), []
+    state, out = joint_acceleration.init(0.0, np.array([w])), []
     for time in t:
-        a, state = filtered.step(float(time), np.array([w * np.cos(w * time)]), state)
+        a, state = joint_acceleration.step(how, float(time), np.array([w * np.cos(w * time)]), state)
         out.append(a[0])
     error = np.array(out)[2000:] + w**2 * np.sin(w * t[2000:])
     stated = w * (2.0 * T * (1.0 - gain) / gain + T / 2)
     assert np.abs(error).max() / w**2 == pytest.approx(stated, rel=0.03)
     draws = np.random.default_rng(1).standard_normal(50000) * 1e-3
-    state, out = filtered.init(0.0, np.zeros(1)), []
+    state, out = joint_acceleration.init(0.0, np.zeros(1)), []
     for k, v in enumerate(draws):
-        a, state = filtered.step(k * T, np.array([v]), state)
+        a, state = joint_acceleration.step(how, k * T, np.array([v]), state)
         out.append(a[0])
     assert np.std(out) == pytest.approx(1e-3 * np.sqrt(2 * gain**3 / (2 - gain) ** 3) / T, rel=0.03)
 
@@ -99,14 +101,12 @@ def test_what_a_load_reads_is_newton_and_euler() -> None:
     load = CarriedMass(MASS, CENTER, inertia=INERTIA)
     xx, yy, zz, xy, xz, yz = INERTIA
     inertia = pin.Inertia(MASS, np.array(CENTER), np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
-    from pliant.estimation.carried_mass import SensorMotion
-
     for _ in range(5):
         v, w, a, alpha = random.normal(size=(4, 3))
         spatial = pin.Motion(np.concatenate([a - np.cross(w, v), alpha]))  # of a classical acceleration a
         twist = pin.Motion(np.concatenate([v, w]))
         wrench = inertia * spatial + twist.cross(inertia * twist)
-        np.testing.assert_allclose(load.reading(SensorMotion(a, w, alpha)), -wrench.vector, atol=1e-12)
+        np.testing.assert_allclose(reading(load, SensorMotion(a, w, alpha)), -wrench.vector, atol=1e-12)
 
 
 def still(robot: Robot, reading: np.ndarray, tick: int = 0, speed: float = 0.0) -> Measurement:

@@ -9,18 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "../../shared/python_signals.hpp"
+
 namespace pliant::mpc::binding {
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 using Input = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-
-inline std::string shape_text(const std::vector<size_t>& shape) {
-  std::string s = "(";
-  for (size_t i = 0; i < shape.size(); ++i) s += (i ? ", " : "") + std::to_string(shape[i]);
-  return s + (shape.size() == 1 ? ",)" : ")");
-}
 
 // Copies an array-like of the given shape into `out`.
 inline void read(nb::handle value, const char* name, const std::vector<size_t>& shape, double* out) {

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pliant.errors import ConfigError
-from pliant.interfaces import Estimator
-from pliant.signals import Estimate, Measurement
-from pliant.spatial import Array
+from pliant.estimation.chain import ChainedEstimator
+from pliant.estimation.wrench import wrench_stage
 
 
-class DirectEstimator(Estimator[Array]):
-    """Passes joint signals on; its state is the filtered joint velocity (n,), rad/s. It ignores wrenches.
+class DirectEstimator(ChainedEstimator):
+    """Passes joint signals on. It ignores wrenches.
 
     Args:
         velocity_gain: α of v ← v + α (v_measured − v); 1 filters nothing.
@@ -19,13 +17,5 @@ class DirectEstimator(Estimator[Array]):
     """
 
     def __init__(self, velocity_gain: float = 1.0) -> None:
-        if not 0.0 < velocity_gain <= 1.0:
-            raise ConfigError(f"velocity_gain must lie within (0, 1], got {velocity_gain}")
         self.velocity_gain = velocity_gain
-
-    def init(self, measurement: Measurement) -> Array:
-        return measurement.v
-
-    def step(self, measurement: Measurement, state: Array) -> tuple[Estimate, Array]:
-        v = state + self.velocity_gain * (measurement.v - state)
-        return Estimate(measurement.time, measurement.q, v, measurement.torque, measurement.torque_sent), v
+        super().__init__(wrench_stage(None, velocity_gain), None, frozenset())

@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
-import pinocchio as pin
 
-from pliant.estimation.environment_fit import EnvironmentFit, FitConfig, FitState
-from pliant.frozen import changed
+from pliant._estimation import EnvironmentStage
+from pliant.estimation.chain import ChainedEstimator
+from pliant.estimation.compiled_robot import compiled_surface, surface_facing, tree_of
+from pliant.estimation.environment_fit import EnvironmentFit, FitConfig
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
-from pliant.signals import Estimate, Measurement
-from pliant.surfaces import PlaneSurface, SurfaceGeometry
+from pliant.surfaces import SurfaceGeometry
 
 
-@dataclass(frozen=True, slots=True)
-class EnvironmentState:
-    """State of the inner estimator and of the fit."""
-
-    inner: Any
-    fit: FitState
-
-
-class EnvironmentEstimator(Estimator[EnvironmentState]):
+class EnvironmentEstimator(ChainedEstimator):
     """Fills `Estimate.environments` for one contact frame, from its normal force and its motion.
 
     Source of the idea: [FFMPC] Kleff et al. 2024, sec. VIII-B, suggests the online estimation of K and B of its eq. 16;
@@ -59,31 +49,10 @@ class EnvironmentEstimator(Estimator[EnvironmentState]):
         config: FitConfig | None = None,
         sliding: float | None = None,
     ) -> None:
-        self.inner, self.robot, self.frame, self.sliding = inner, robot, frame, sliding
-        self.surface = normal if isinstance(normal, SurfaceGeometry) else PlaneSurface.facing(normal)
+        self.robot, self.frame, self.sliding = robot, frame, sliding
+        self.surface = surface_facing(normal)
         self.fit = EnvironmentFit(config or FitConfig(), period)
-        self._frame = robot.frame_id(frame)
-        self._data = robot.model.createData()  # scratch space: nothing in it outlives a step
-
-    def init(self, measurement: Measurement) -> EnvironmentState:
-        return EnvironmentState(self.inner.init(measurement), FitState())
-
-    def step(self, measurement: Measurement, state: EnvironmentState) -> tuple[Estimate, EnvironmentState]:
-        estimate, inner = self.inner.step(measurement, state.inner)
-        wrench = estimate.wrenches.get(self.frame)
-        fit = state.fit
-        if wrench is not None:
-            model, data = self.robot.model, self._data
-            pin.forwardKinematics(model, data, estimate.q, estimate.v)
-            position = pin.updateFramePlacement(model, data, self._frame).translation
-            axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-            velocity = pin.getFrameVelocity(model, data, self._frame, axes).linear
-            distance, normal, _ = self.surface.near(position)
-            rate = -float(normal @ velocity)
-            across = velocity + rate * normal
-            sliding = math.sqrt(across.dot(across))
-            if self.sliding is None or sliding <= self.sliding:
-                fit = self.fit.step(float(normal @ np.asarray(wrench[:3])), -distance, rate, fit)
-        if fit.found is not None:
-            estimate = changed(estimate, environments={**estimate.environments, self.frame: fit.found})
-        return estimate, EnvironmentState(inner, fit)
+        robot.frame_id(frame)
+        limit = math.inf if sliding is None else sliding
+        stage = EnvironmentStage(tree_of(robot), frame, compiled_surface(self.surface), self.fit.core, limit)
+        super().__init__(stage, inner, frozenset(), environment=frame)

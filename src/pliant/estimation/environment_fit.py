@@ -2,37 +2,37 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
 from pydantic import Field
 
+from pliant._estimation import FIT_COVARIANCE, FIT_FOUND, FIT_SIZE
+from pliant._estimation import EnvironmentFit as CompiledFit
 from pliant.configuration import Config
 from pliant.environment import Environment
-from pliant.estimation.filters import Butterworth, Memory
-from pliant.frozen import changed
+from pliant.estimation.filters import Butterworth
 from pliant.quantity import quantity
 from pliant.spatial import Array
 
 
 @dataclass(frozen=True, slots=True)
 class FitState:
-    """State of the fit. The signals are depth, its rate, and force: m, m/s, N."""
+    """State of the fit."""
 
-    reference: Array | None = None
-    """(3,) signals at first contact, subtracted from all others for numerical accuracy; None without contact"""
-    filter: Memory | None = None
-    accepted: Array | None = None
-    """(3,) filtered signals that were used last"""
-    count: int = 0
-    """samples used since first contact"""
-    mean: Array = field(default_factory=lambda: np.zeros(3))
-    """(3,) exponentially weighted"""
-    covariance: Array = field(default_factory=lambda: np.zeros((3, 3)))
-    """(3, 3) exponentially weighted"""
-    found: Environment | None = None
-    """the last estimate that was accurate enough; it is kept after the contact ends"""
+    memory: Array = field(default_factory=lambda: np.zeros(FIT_SIZE))
+    """numbers of the compiled fit"""
+
+    @property
+    def covariance(self) -> Array:
+        """(3, 3) of depth, its rate and force (m, m/s, N) since first contact, exponentially weighted."""
+        return self.memory[FIT_COVARIANCE : FIT_COVARIANCE + 9].reshape(3, 3)
+
+    @property
+    def found(self) -> Environment | None:
+        """The last estimate that was accurate enough; it is kept after the contact ends."""
+        known, *belief = self.memory[FIT_FOUND : FIT_FOUND + 5].tolist()
+        return Environment(*belief) if known else None
 
 
 class FitConfig(Config):
@@ -97,12 +97,19 @@ class EnvironmentFit:
 
     def __init__(self, config: FitConfig, period: float) -> None:
         self.config = config
-        self._filter = Butterworth(config.cutoff, period)
+        filter_ = Butterworth(config.cutoff, period)
         passed = min(1.0, 2.22 * config.cutoff * period)  # share of white noise's variance: noise bandwidth 1.11 f_c
-        self._correlated = 1.0 / passed
-        """neighbouring samples that share their noise after the filter"""
-        self._noise = passed * np.diag([config.noise_depth**2, config.noise_rate**2])
-        """(2, 2) covariance of the motion's noise after the filter"""
+        self.core = CompiledFit(
+            filter=filter_.coefficients,
+            touch=config.touch,
+            least_force=config.least_force,
+            least_motion=config.least_motion,
+            noise=(passed * config.noise_depth**2, passed * config.noise_rate**2),
+            correlated=1.0 / passed,
+            samples=config.memory,
+            least_samples=config.least_samples,
+            accuracy=config.accuracy,
+        )
 
     def step(self, force: float, depth: float, rate: float, state: FitState) -> FitState:
         """One sample.
@@ -113,55 +120,6 @@ class EnvironmentFit:
             rate: m/s of the depth.
             state: of the step before.
         """
-        if force < self.config.touch:
-            return FitState(found=state.found)
-        signals = np.array([depth, rate, force])
-        if state.reference is None:
-            state = changed(state, reference=signals, filter=self._filter.init(np.zeros(3)))
-        assert state.reference is not None
-        assert state.filter is not None
-        value, memory = self._filter.step(signals - state.reference, state.filter)
-        state = changed(state, filter=memory)
-        return self._learn(value, state) if self._informative(value, state) else state
-
-    def _informative(self, value: Array, state: FitState) -> bool:
-        if state.accepted is None:
-            return True
-        (depth, _, force), (depth_before, _, force_before) = value.tolist(), state.accepted.tolist()
-        stirred = abs(force - force_before) >= self.config.least_force
-        return stirred and abs(depth - depth_before) >= self.config.least_motion
-
-    def _learn(self, value: Array, state: FitState) -> FitState:
-        count = state.count + 1
-        share = max(1.0 / count, 1.0 / self.config.memory)
-        off = value - state.mean
-        mean = state.mean + share * off
-        covariance = (1.0 - share) * (state.covariance + share * np.outer(off, off))
-        found = self._solve(covariance, count, share) if count >= self.config.least_samples else None
-        return changed(state, accepted=value, count=count, mean=mean, covariance=covariance, found=found or state.found)
-
-    def _solve(self, covariance: Array, count: int, share: float) -> Environment | None:
-        """K and B with their uncertainties; None where the data do not determine K."""
-        independent = min(float(count), 2.0 / share - 1.0) / self._correlated
-        told = covariance - np.pad(self._noise, (0, 1))
-        for columns in ([0, 1], [0]):  # a damping below zero is set to zero
-            if any(told[i, i] < 2.0 * self._noise[i, i] for i in columns):
-                continue
-            A, b = told[np.ix_(columns, columns)], told[columns, 2]
-            scale = np.sqrt(np.diag(A))
-            if not np.all(scale > 0.0):
-                continue
-            correlation = A / np.outer(scale, scale)
-            if np.linalg.det(correlation) < 1e-6:
-                continue
-            inverse = np.linalg.inv(correlation) / np.outer(scale, scale)
-            gains = inverse @ b
-            if gains[-1] < 0.0:
-                continue
-            residual = max(float(covariance[2, 2] - gains @ b), 0.0)
-            std = np.sqrt(residual * np.diag(inverse) / max(independent - 3.0, 1.0))
-            if std[0] > self.config.accuracy * gains[0]:
-                return None
-            damping, damping_std = (gains[1], std[1]) if len(columns) == 2 else (0.0, math.inf)
-            return Environment(float(gains[0]), float(damping), float(std[0]), float(damping_std))
-        return None
+        memory = state.memory.copy()
+        self.core.step(force, depth, rate, memory)
+        return FitState(memory)

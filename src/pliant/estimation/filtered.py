@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any
 
-from pliant.estimation.filters import LowPass, Memory
-from pliant.frozen import changed
+from pliant._estimation import FilteredStage
+from pliant.estimation.chain import ChainedEstimator
+from pliant.estimation.filters import LowPass
 from pliant.interfaces import Estimator
-from pliant.signals import Estimate, Measurement
 
 
-@dataclass(frozen=True, slots=True)
-class FilteredState:
-    """State of the inner estimator and of the filters."""
-
-    inner: Any
-    velocity: Memory | None = None
-    """None before the first step"""
-    torque: Memory | None = None
-    wrenches: dict[str, Memory] = field(default_factory=dict)
-    """frame → state"""
-
-
-class FilteredEstimator(Estimator[FilteredState]):
+class FilteredEstimator(ChainedEstimator):
     """Low-passes velocities, torques and contact wrenches of another estimator; signals without a filter are unchanged.
 
     The remedy for gearing ripple in a force signal is a `Butterworth` below the ripple's frequency.
@@ -43,22 +30,11 @@ class FilteredEstimator(Estimator[FilteredState]):
         torque: LowPass | None = None,
         wrench: LowPass | None = None,
     ) -> None:
-        self.inner, self.velocity, self.torque, self.wrench = inner, velocity, torque, wrench
-
-    def init(self, measurement: Measurement) -> FilteredState:
-        return FilteredState(self.inner.init(measurement))
-
-    def step(self, measurement: Measurement, state: FilteredState) -> tuple[Estimate, FilteredState]:
-        raw, inner = self.inner.step(measurement, state.inner)
-        v, torque, wrenches = raw.v, raw.torque, raw.wrenches
-        memory_v, memory_torque, memories = None, None, dict[str, Memory]()
-        if self.velocity is not None:
-            v, memory_v = self.velocity.step(v, state.velocity or self.velocity.init(v))
-        if self.torque is not None:
-            torque, memory_torque = self.torque.step(torque, state.torque or self.torque.init(torque))
-        if self.wrench is not None:
-            passed = {f: self.wrench.step(w, state.wrenches.get(f) or self.wrench.init(w)) for f, w in wrenches.items()}
-            wrenches = {frame: value for frame, (value, _) in passed.items()}
-            memories = {frame: memory for frame, (_, memory) in passed.items()}
-        estimate = changed(raw, v=v, torque=torque, wrenches=wrenches)
-        return estimate, FilteredState(inner, memory_v, memory_torque, memories)
+        self.velocity, self.torque, self.wrench = velocity, torque, wrench
+        given = {"v": velocity, "torque": torque, "wrenches": wrench}
+        stage = FilteredStage(
+            velocity=None if velocity is None else velocity.coefficients,
+            torque=None if torque is None else torque.coefficients,
+            wrench=None if wrench is None else wrench.coefficients,
+        )
+        super().__init__(stage, inner, frozenset(name for name, filter in given.items() if filter is not None))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from typing import NamedTuple
 
 import numpy as np
 
+from pliant._estimation import filter_step
 from pliant.errors import ConfigError
 from pliant.sampling import kept_share
 from pliant.spatial import Array
@@ -20,16 +20,30 @@ class Memory(NamedTuple):
     second: Array
 
 
-class LowPass(ABC):
-    """A low-pass filter with unit DC gain."""
+Coefficients = tuple[float, float, float, float, float]
+"""b_0, b_1, b_2, a_1, a_2 of y = (b_0 + b_1 z⁻¹ + b_2 z⁻²)/(1 + a_1 z⁻¹ + a_2 z⁻²) x"""
 
-    @abstractmethod
+
+class LowPass:
+    """A low-pass filter of up to second order with gain one at rest, in transposed direct form II.
+
+    Args:
+        coefficients: of the filter.
+    """
+
+    def __init__(self, coefficients: Coefficients) -> None:
+        self.coefficients = coefficients
+
     def init(self, value: Array) -> Memory:
-        """State of a filter in steady state at `value` (k,): its output starts there without a transient."""
+        """State of a filter that has seen `value` (k,) for ever: its output starts there without a transient."""
+        b_0, _, b_2, _, a_2 = self.coefficients
+        return Memory((1.0 - b_0) * value, (b_2 - a_2) * value)
 
-    @abstractmethod
     def step(self, value: Array, state: Memory) -> tuple[Array, Memory]:
         """Filtered value (k,) and the next state."""
+        filtered, after = np.array(value, dtype=np.float64), Memory(state.first.copy(), state.second.copy())
+        filter_step(self.coefficients, filtered, after.first, after.second)
+        return filtered, after
 
 
 class FirstOrder(LowPass):
@@ -43,15 +57,8 @@ class FirstOrder(LowPass):
 
     def __init__(self, cutoff: float, period: float) -> None:
         _check(cutoff, period)
-        self.gain = 1.0 - kept_share(cutoff, period)
-        """α"""
-
-    def init(self, value: Array) -> Memory:
-        return Memory(value, value)
-
-    def step(self, value: Array, state: Memory) -> tuple[Array, Memory]:
-        filtered = state.first + self.gain * (value - state.first)
-        return filtered, Memory(filtered, filtered)
+        kept = kept_share(cutoff, period)
+        super().__init__((1.0 - kept, 0.0, 0.0, -kept, 0.0))
 
 
 class Butterworth(LowPass):
@@ -71,18 +78,9 @@ class Butterworth(LowPass):
             )
         w = math.tan(math.pi * cutoff * period)
         scale = 1.0 / (1.0 + math.sqrt(2.0) * w + w * w)
-        self._b = w * w * scale  # numerator b (1 + 2 z⁻¹ + z⁻²)
-        self._a_1 = 2.0 * (w * w - 1.0) * scale
-        self._a_2 = (1.0 - math.sqrt(2.0) * w + w * w) * scale
-
-    def init(self, value: Array) -> Memory:
-        return Memory((1.0 - self._b) * value, (self._b - self._a_2) * value)
-
-    def step(self, value: Array, state: Memory) -> tuple[Array, Memory]:
-        # transposed direct form II
-        driven = self._b * value
-        filtered = driven + state.first
-        return filtered, Memory(2.0 * driven - self._a_1 * filtered + state.second, driven - self._a_2 * filtered)
+        b = w * w * scale
+        a_1, a_2 = 2.0 * (w * w - 1.0) * scale, (1.0 - math.sqrt(2.0) * w + w * w) * scale
+        super().__init__((b, 2.0 * b, b, a_1, a_2))
 
 
 def _check(cutoff: float, period: float) -> None:

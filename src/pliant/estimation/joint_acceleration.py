@@ -5,22 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from pliant.errors import ConfigError
-from pliant.spatial import Array
-
-
-@dataclass(frozen=True, slots=True)
-class AccelerationState:
-    """State of the filter."""
-
-    time: float
-    """s of the last sample"""
-    first: Array
-    """(n,) v after the first stage, rad/s"""
-    second: Array
-    """(n,) v after the second stage, rad/s"""
 
 
 @dataclass(frozen=True)
@@ -42,23 +27,3 @@ class JointAcceleration:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.cutoff) and self.cutoff > 0.0):
             raise ConfigError(f"the cutoff of joint accelerations must be above 0 Hz, got {self.cutoff} Hz")
-
-    def init(self, time: float, v: Array) -> AccelerationState:
-        """State of a robot that has moved with constant v (n,); time in s."""
-        return AccelerationState(time, v, v)
-
-    def step(self, time: float, v: Array, state: AccelerationState) -> tuple[Array, AccelerationState]:
-        """Acceleration (n,), rad/s², zero as long as no time has passed, and the next state.
-
-        Args:
-            time: of the sample, s.
-            v: (n,) rad/s.
-            state: of the sample before.
-        """
-        period = time - state.time
-        if period <= 0.0:
-            return np.zeros_like(v), state
-        gain = -math.expm1(-2.0 * math.pi * self.cutoff * period)
-        first = state.first + gain * (v - state.first)
-        second = state.second + gain * (first - state.second)
-        return (second - state.second) / period, AccelerationState(time, first, second)

@@ -4,34 +4,15 @@ position does not drift."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
+from pliant._estimation import JointStateStage
 from pliant.errors import ConfigError
-from pliant.estimation.ordering import time_since
-from pliant.frozen import changed
+from pliant.estimation.chain import ChainedEstimator
 from pliant.interfaces import Estimator
-from pliant.signals import Estimate, Measurement
-from pliant.spatial import Array
 
 
-@dataclass(frozen=True, slots=True)
-class JointStateState:
-    """State of the filter."""
-
-    inner: Any
-    """state of the estimator inside"""
-    time: float
-    """s, of the last reading"""
-    q: Array
-    """(n,) filtered, rad"""
-    v: Array
-    """(n,) last velocity, rad/s"""
-    readings: int
-    """number of readings"""
-
-
-class JointStateFilter(Estimator[JointStateState]):
+class JointStateFilter(ChainedEstimator):
     """`q̂ ← q̂ + ½ T (v + v_before)`, then `q̂ ← q̂ + a (q − q̂)`, `a = T/memory`: position noise without a lag.
 
     This is the stationary Kalman filter of a joint whose velocity is measured, too: with white noise σ_q on q and σ_v
@@ -50,21 +31,5 @@ class JointStateFilter(Estimator[JointStateState]):
     def __init__(self, inner: Estimator[Any], memory: float = 0.3) -> None:
         if not (math.isfinite(memory) and memory > 0.0):
             raise ConfigError(f"the memory of a joint state filter must be above zero (s), got {memory}")
-        self.inner, self.memory = inner, memory
-
-    def init(self, measurement: Measurement) -> JointStateState:
-        return JointStateState(self.inner.init(measurement), measurement.time, measurement.q, measurement.v, 0)
-
-    def step(self, measurement: Measurement, state: JointStateState) -> tuple[Estimate, JointStateState]:
-        """The completed estimate and the next state.
-
-        Raises:
-            SignalError: the measurement is older than the last one.
-        """
-        estimate, inner = self.inner.step(measurement, state.inner)
-        period = time_since(state.time, measurement)
-        moved = state.q + 0.5 * period * (state.v + estimate.v)
-        readings = state.readings + 1
-        gain = min(1.0, max(period / self.memory, 1.0 / readings))
-        q = moved + gain * (estimate.q - moved)
-        return changed(estimate, q=q), JointStateState(inner, measurement.time, q, estimate.v, readings)
+        self.memory = memory
+        super().__init__(JointStateStage(memory), inner, frozenset({"q"}))

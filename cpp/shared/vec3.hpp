@@ -1,9 +1,9 @@
-// Three-vectors and rotation matrices, only as much as contacts need.
+// Three-vectors and rotation matrices, only as much as contacts and estimators need.
 #pragma once
 
 #include <cmath>
 
-namespace pliant::contact {
+namespace pliant {
 
 struct Vec3 {
   double x = 0.0, y = 0.0, z = 0.0;
@@ -33,4 +33,4 @@ struct Rotation {
   Vec3 to_local(const Vec3& v) const { return {dot(column(0), v), dot(column(1), v), dot(column(2), v)}; }
 };
 
-}  // namespace pliant::contact
+}  // namespace pliant

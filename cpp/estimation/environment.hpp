@@ -1,0 +1,31 @@
+// Stiffness and damping of what one frame touches, from its normal force and its motion.
+#pragma once
+#include "environment_fit.hpp"
+#include "surface.hpp"
+#include "tree.hpp"
+
+namespace pliant::estimation {
+
+class EnvironmentStage final : public Stage {
+ public:
+  // Above the tangential speed `sliding` [m/s] nothing is learnt.
+  EnvironmentStage(std::shared_ptr<const Tree> robot, std::string frame, std::shared_ptr<const Surface> surface,
+                   const EnvironmentFit& fit, double sliding);
+
+  std::unique_ptr<Stage> bound(int n, Names& frames) const override;
+  int size() const override { return fit_size; }
+  void init(const Reading& reading, double* memory) const override;
+  Refusal step(const Reading& reading, Belief& belief, double* memory) override;
+
+ private:
+  std::shared_ptr<const Tree> robot_;
+  std::string name_;
+  Frame frame_;
+  std::shared_ptr<const Surface> surface_;
+  EnvironmentFit fit_;
+  double sliding_;
+  int row_ = -1;              // of the frame's wrench; -1: nobody gives it
+  std::vector<Body> bodies_;  // scratch space
+};
+
+}  // namespace pliant::estimation

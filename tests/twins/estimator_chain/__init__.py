@@ -1,0 +1,1 @@
+"""The chain of estimators in Python: the twin of `cpp/estimation`."""
