@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,9 +59,10 @@ class ChainedEstimator(Estimator[ChainState]):
         self._completed: Estimator[Any] | None = chain._completed if chain else inner
         self._writes: frozenset[str] = writes | (chain._writes if chain else frozenset())
         self._robots: tuple[Robot, ...] = (*(chain._robots if chain else ()), *((named,) if named else ()))
+        self._observes = "disturbance" in self._writes
         self._senses: bool = chain._senses if chain else named is not None
         self.environment: str | None = environment or (chain.environment if chain else None)
-        self._cores: dict[tuple[int, tuple[str, ...]], Chain] = {}
+        self._bound: dict[tuple[int, tuple[str, ...]], _Bound] = {}
 
     def init(self, measurement: Measurement) -> ChainState:
         """The state before the first step.
@@ -77,9 +77,9 @@ class ChainedEstimator(Estimator[ChainState]):
             given, _ = self._completed.step(measurement, self._completed.init(measurement))
             state = self._completed.init(measurement)
             frames = tuple(given.wrenches)
-        core = self._core(measurement.q.size, frames)
-        memory, out = np.zeros(core.memory_size), np.zeros(core.belief_size)
-        refusal = core.init(measurement, given, memory, out)
+        bound = self._for(measurement.q.size, frames)
+        memory, out = np.zeros(bound.core.memory_size), np.zeros(bound.size)
+        refusal = bound.core.init(measurement, given, memory, out)
         if refusal is not None:
             raise _refused(refusal)
         return ChainState(state, frames, memory)
@@ -93,57 +93,71 @@ class ChainedEstimator(Estimator[ChainState]):
         given = completed = None
         if self._completed is not None:
             given, completed = self._completed.step(measurement, state.completed)
-        core = self._core(measurement.q.size, state.frames)
-        memory, out = state.memory.copy(), np.empty(core.belief_size)
-        refusal = core.step(measurement, given, memory, out)
+        bound = self._for(measurement.q.size, state.frames)
+        memory, out = state.memory.copy(), np.empty(bound.size)
+        refusal = bound.core.step(measurement, given, memory, out)
         if refusal is not None:
             raise _refused(refusal)
-        found = self._found(core, measurement, out) if given is None else self._completing(core, given, out)
+        found = self._found(bound, measurement, out) if given is None else self._completing(bound, given, out)
         return found, ChainState(completed, state.frames, memory)
 
     # ------------------------------------------------------------------ inside
 
-    def _core(self, n: int, frames: tuple[str, ...]) -> Chain:
-        core = self._cores.get((n, frames))
-        if core is None:
+    def _for(self, n: int, frames: tuple[str, ...]) -> _Bound:
+        bound = self._bound.get((n, frames))
+        if bound is None:
             for robot in self._robots:
                 for frame in frames:
                     robot.frame_id(frame)
-            core = self._cores[n, frames] = Chain(self._stages, n, frames, self._completed is not None)
-        return core
+            bound = _Bound(Chain(self._stages, n, frames, self._completed is not None), n)
+            self._bound[n, frames] = bound
+        return bound
 
-    def _found(self, core: Chain, measurement: Measurement, out: Array) -> Estimate:
-        n, frames = measurement.q.size, core.frames
-        wrenches, touches = _wrenches(core, n, out)
+    def _found(self, bound: _Bound, measurement: Measurement, out: Array) -> Estimate:
+        n = bound.n
         return Estimate(
             measurement.time,
             out[:n],
             out[n : 2 * n],
             out[2 * n : 3 * n],
             measurement.torque_sent,
-            dict(zip(frames, wrenches, strict=True)),
-            dict(zip(frames, touches, strict=True)),
-            out[3 * n : 4 * n] if "disturbance" in self._writes else None,
+            bound.wrenches(out),
+            bound.contacts(out),
+            out[3 * n : 4 * n] if self._observes else None,
             {} if self.environment is None else _environments(self.environment, out),
         )
 
-    def _completing(self, core: Chain, given: Estimate, out: Array) -> Estimate:
+    def _completing(self, bound: _Bound, given: Estimate, out: Array) -> Estimate:
         """Somebody else's estimate with what this chain writes."""
-        n, frames = given.q.size, core.frames
+        n = bound.n
         written = {"q": out[:n], "v": out[n : 2 * n], "torque": out[2 * n : 3 * n], "disturbance": out[3 * n : 4 * n]}
         fields: dict[str, Any] = {name: value for name, value in written.items() if name in self._writes}
         if "wrenches" in self._writes:
-            fields["wrenches"] = dict(zip(frames, _wrenches(core, n, out)[0], strict=True))
+            fields["wrenches"] = bound.wrenches(out)
         if self.environment is not None and (found := _environments(self.environment, out)):
             fields["environments"] = {**given.environments, **found}
         return changed(given, **fields)
 
 
-def _wrenches(core: Chain, n: int, out: Array) -> tuple[Array, Sequence[bool]]:
-    """(frames, 6) and whether each touches."""
-    rows, count, start = core.rows, len(core.frames), 4 * n
-    touches = out[start + 6 * rows : start + 6 * rows + count].tolist()
-    return out[start : start + 6 * count].reshape(count, 6), [touch > 0.0 for touch in touches]
+class _Bound:
+    """A chain for one robot and its sensors, and where its estimates lie in a row of numbers."""
+
+    def __init__(self, core: Chain, n: int) -> None:
+        self.core, self.n, self.size = core, n, core.belief_size
+        self._frames = tuple(core.frames)
+        start, count = 4 * n, len(self._frames)
+        self._wrenches = slice(start, start + 6 * count)
+        self._touches = slice(start + 6 * core.rows, start + 6 * core.rows + count)
+
+    def wrenches(self, out: Array) -> dict[str, Array]:
+        """Frame → wrench (6,)."""
+        frames = self._frames
+        return dict(zip(frames, out[self._wrenches].reshape(-1, 6), strict=True)) if frames else {}
+
+    def contacts(self, out: Array) -> dict[str, bool]:
+        """Frame → whether it touches."""
+        frames = self._frames
+        return dict(zip(frames, map(bool, out[self._touches].tolist()), strict=True)) if frames else {}
 
 
 def _environments(frame: str, out: Array) -> dict[str, Environment]:

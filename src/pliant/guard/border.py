@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pinocchio as pin
 
+from pliant import _guard
 from pliant.errors import PliantError, RunFailedError, SignalError
 from pliant.guard import sound
 from pliant.guard.faults import Fault
@@ -191,7 +192,9 @@ class Guard:
 
     def _within(self, torque: Array) -> Array:
         """The torque itself if it is within the limits, else the clamped torque."""
-        if self._limit is None or not np.count_nonzero(np.abs(torque) > self._bound):
+        if self._limit is None or self._bound is None or _guard.is_within(torque, self._bound):
+            return torque
+        if not np.count_nonzero(np.abs(torque) > self._bound):
             return torque
         return np.clip(torque, -self._limit, self._limit)
 

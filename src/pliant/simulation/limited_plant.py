@@ -49,8 +49,8 @@ class RunLimits:
         """Which limit is passed, by what, in a few words; empty: none. Args: before: (3,) m, place a period ago."""
         place = truth.positions[self.frame]
         wrench = truth.wrenches.get(self.frame)
-        force = 0.0 if wrench is None else float(np.linalg.norm(wrench[:3]))
-        speed = 0.0 if before is None else float(np.linalg.norm(place - before)) / period
+        force = 0.0 if wrench is None else math.sqrt(wrench[:3].dot(wrench[:3]))
+        speed = 0.0 if before is None else math.dist(place, before) / period
         share = float(np.max(np.abs(truth.torque) / torque_limit))
         for name, value, bound, unit in (
             ("force", force, self.force, "N"),
@@ -66,11 +66,11 @@ class RunLimits:
 
 
 class LimitedState(NamedTuple):
-    """The world inside, and where the frame was."""
+    """The world inside, and what really happens in it."""
 
     inner: Any
-    place: Array | None
-    """(3,) m"""
+    truth: Truth | None
+    """None: nobody has asked yet, or the world has none"""
 
 
 class LimitedPlant(Plant[LimitedState]):
@@ -100,12 +100,12 @@ class LimitedPlant(Plant[LimitedState]):
     def step(self, command: Command, world: LimitedState) -> tuple[Measurement, LimitedState]:
         measurement, inner = self.inner.step(command, world.inner)
         truth = self.inner.truth(inner)
-        if truth is None:
-            return measurement, LimitedState(inner, None)
-        said = self.limits.broken(truth, world.place, self.period, self._torque_limit)
-        if said:
-            raise RunFailedError(said)
-        return measurement, LimitedState(inner, truth.positions[self.limits.frame])
+        if truth is not None:
+            before = None if world.truth is None else world.truth.positions[self.limits.frame]
+            said = self.limits.broken(truth, before, self.period, self._torque_limit)
+            if said:
+                raise RunFailedError(said)
+        return measurement, LimitedState(inner, truth)
 
     def truth(self, world: LimitedState) -> Truth | None:
-        return self.inner.truth(world.inner)
+        return self.inner.truth(world.inner) if world.truth is None else world.truth

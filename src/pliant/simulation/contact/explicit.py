@@ -18,7 +18,7 @@ from pliant.errors import ConfigError, RunFailedError
 from pliant.simulation.contact.material import ContactMaterial, require_stable_step
 from pliant.simulation.mujoco_library import HALF_STEPS, addresses
 from pliant.simulation.surface import Surface
-from pliant.spatial import Array
+from pliant.spatial import Array, cross
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,8 @@ class ExplicitContacts:
         """Wrench (6,) on the first geom of pair number `index`, about a point (3,), world axes."""
         slots = self._slots[index]
         force, lever = state.force[slots], state.point[slots] - about
-        return np.concatenate([force.sum(axis=0), np.cross(lever, force).sum(axis=0)])
+        moment = cross(lever[0], force[0]) if len(force) == 1 else np.cross(lever, force).sum(axis=0)
+        return np.concatenate([force.sum(axis=0), moment])
 
     def force_on(self, state: ContactState, geom: str) -> Array:
         """Sum of all contact forces on a geom (3,), N, world axes."""
