@@ -22,3 +22,11 @@ def joint_motions(model: pin.Model) -> list[Array]:
         np.array(pin.computeJointJacobian(model, data, neutral, index)).reshape(6, -1)[:, model.joints[index].idx_v]
         for index in range(1, model.njoints)
     ]
+
+
+def mass_along(model: pin.Model, q: Array, frame: int, direction: Array) -> float:
+    """1 / (dᵀ J M⁻¹ Jᵀ d), kg: what a frame weighs for a force along a unit vector d (3,) of the world at q (n,)."""
+    data = model.createData()
+    J = pin.computeFrameJacobian(model, data, q, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
+    along = direction @ np.array(J)[:3]
+    return 1.0 / float(along @ np.linalg.solve(mass_matrix(model, data, q), along))

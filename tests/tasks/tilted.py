@@ -23,9 +23,10 @@ def normal_of(tilt: float) -> Array:
     return np.array([math.sin(math.radians(tilt)), 0.0, math.cos(math.radians(tilt))])
 
 
-def tilted_task(tilt: float, controller: str, *, late: bool, **more: Any) -> Task:
-    """Down to the plane, 15 N at rest, then 15 N along a way of 50 mm. Args: late: whether the arm is imperfect."""
-    place = _HOME - (_GAP + _RADIUS) * normal_of(tilt)
+def tilted_task(tilt: float, controller: str, *, late: bool, gap: float = _GAP, **more: Any) -> Task:
+    """Down to the plane, 15 N at rest, then 15 N along a way of 50 mm. Args: late: whether the arm is imperfect; gap: m
+    between tool and plane."""
+    place = _HOME - (gap + _RADIUS) * normal_of(tilt)
     below = 0.01  # m, of the frame: 5 mm into the plane
     values: dict[str, Any] = {
         "robot": "iiwa14",

@@ -112,8 +112,8 @@ def check_command(
         if row[0] == found.surfaces[0].label or row[-1] != "✓":
             table.add_row(*row)
     console.print(table)
-    if about := study.about(config):
-        _say(console, f"part     {about}")
+    for what, about in study.about(config).items():
+        _say(console, f"{what:7s}  {about}")
     file = save(
         reach_figure(found, config.case), output_folder(out or study_folder(target)) / f"{config.case}_check.png"
     )

@@ -93,6 +93,10 @@ class Study(ABC, Generic[C]):
         metrics, case = self.metrics(config, log), self.cases.get(config.case)
         return metrics if case is None else case.beside(config, metrics)
 
+    def suggested(self, config: C) -> Mapping[str, tuple[float, str]]:
+        """Key → value and unit of what follows from the rest of a configuration where it says nothing."""
+        return {}
+
     def verdict(self, config: C, metrics: Sequence[Metric]) -> str | None:
         """The reason why a run that reached its end still counts as failed; None if it does not."""
         return None

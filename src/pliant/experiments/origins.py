@@ -41,7 +41,7 @@ class Origin:
 
 
 def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]:
-    """Every value of a run, with the derived parameters of the controller.
+    """Every value of a run, with the derived parameters of the controller and what its study suggests.
 
     Args:
         choice: the requested run.
@@ -53,6 +53,7 @@ def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]
         for path, value, about, default in leaves(config)
         if path[0] != _CONTROL
     ]
+    found += [Origin(key, *value, "suggested") for key, value in choice.study.suggested(config).items()]
     if parameters is None:
         return found
     above = (_CONTROL, config.controller) if config.control_by_name else (_CONTROL,)

@@ -11,6 +11,7 @@ import numpy as np
 
 from pliant.errors import ConfigError, RunFailedError
 from pliant.interfaces import ReferenceSource
+from pliant.references.build_up import BuildUp
 from pliant.references.force_axes import task_axes
 from pliant.robot import Robot
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
@@ -50,6 +51,8 @@ class Stage:
     task: TaskReference
     endings: tuple[Ending, ...]
     """any of which is enough"""
+    press: float = 0.0
+    """s in which its force is reached from the first contact on, where nothing is touched when it begins; 0: at once"""
 
     def __post_init__(self) -> None:
         along = any(one.force is not None or one.depth is not None for one in self.endings)
@@ -87,6 +90,7 @@ class StageState(NamedTuple):
     """changes that were made"""
     task: TaskReference
     whole: Any
+    built: BuildUp = BuildUp()
 
 
 class Stages(ReferenceSource[StageState]):
@@ -124,12 +128,15 @@ class Stages(ReferenceSource[StageState]):
 
     def init(self, estimate: Estimate) -> StageState:
         task = replace(self.stages[0].task, tuning=self._tuning)
-        return StageState(0, estimate.time, self._place(estimate), estimate.time, 0, task, self._whole)
+        built = BuildUp(self.stages[0].press)
+        return StageState(0, estimate.time, self._place(estimate), estimate.time, 0, task, self._whole, built)
 
     def step(self, estimate: Estimate, state: StageState) -> tuple[Reference, StageState]:
         """Raises RunFailedError where a timeout that is a failure ends a stage, or a bound of its force axes is
         passed."""
         state = self._changed(self._advanced(estimate, state), estimate.time)
+        if np.isinf(state.built.touched) and estimate.contacts.get(self.frame, False):
+            state = state._replace(built=state.built._replace(touched=estimate.time))
         self._kept(estimate, state)
         return self._said(estimate.time, state), state
 
@@ -147,7 +154,10 @@ class Stages(ReferenceSource[StageState]):
             found.append(self._said(time, state))
 
     def _said(self, time: float, state: StageState) -> Reference:
-        return Reference(time, (state.task,), phase=self.stages[state.stage].name, tuning=state.whole)
+        task, share = state.task, state.built.share(time)
+        if share < 1.0:
+            task = replace(task, wrench=share * task.wrench)
+        return Reference(time, (task,), phase=self.stages[state.stage].name, tuning=state.whole)
 
     def _ends(self, state: StageState) -> float:
         """s at which the clock alone ends the stage; infinite where it does not."""
@@ -173,7 +183,11 @@ class Stages(ReferenceSource[StageState]):
             )
         if state.stage + 1 == len(self.stages):
             return state
-        return self._next(state, estimate.time, self._place(estimate))
+        after = self._next(state, estimate.time, self._place(estimate))
+        press = self.stages[after.stage].press
+        if press == 0.0 or estimate.contacts.get(self.frame, False):
+            return after
+        return after._replace(built=BuildUp(press))
 
     def _kept(self, estimate: Estimate, state: StageState) -> None:
         """Raises RunFailedError where the frame has moved farther along force axes than the stage allows."""

@@ -75,7 +75,9 @@ class AnyOf(Config):
 class MotionLimit(Config):
     """Of the motion along force axes."""
 
-    speed: float | None = quantity(None, "m/s", "largest", gt=0.0)
+    speed: float | None = quantity(
+        None, "m/s", "largest; none: where the phase goes towards a contact, what lands gently", gt=0.0
+    )
     deviation: float | None = quantity(None, "m", "from where the phase began, largest", gt=0.0)
 
 
@@ -103,6 +105,14 @@ class Phase(Config):
     )
     motion: dict[str, Any] | None = Field(default=None, description="path along the motion axes")
     limit: MotionLimit | None = Field(default=None, description="of the motion along force axes")
+    press: float | None = quantity(
+        None,
+        "s",
+        "in which the force is reached once contact is felt; none: where the phase goes towards a contact, what lands"
+        " gently; 0: at once",
+        ge=0.0,
+        le=60.0,
+    )
     touch: str | None = Field(default=None, description="thing of the scene that this phase is to touch: it is sought")
     settle: float = quantity(0.0, "s", "of the phase that its metrics leave out", ge=0.0)
     duration: float | None = quantity(None, "s", "short for until = { duration = … }", gt=0.0, le=3600.0)

@@ -27,7 +27,7 @@ from pliant.tasks.surface_config import SurfaceConfig
 
 FORMAT = 1
 _OF_A_PATH = {"surface": SurfaceConfig(), "path": PathConfig(), "force": Force(), "phases": Phases()}
-_OF_A_LIST = ("event", "scene", "moves", "start", "impedance")
+_OF_A_LIST = ("event", "scene", "moves", "start", "impedance", "landing")
 _OF_THE_SURFACE = ("shift", "tilt", "axis", "stiffness", "damping", "friction")
 
 
@@ -61,6 +61,11 @@ class TaskParts(Config):
         default=None, description="of the moved frame; none: the controller's own"
     )
     planner: PlannerConfig = PlannerConfig()
+    landing: Literal["gentle", "off"] = Field(
+        default="gentle",
+        description="of each [[phase]] that goes towards a contact; gentle: where it says no limit.speed and no press,"
+        " both follow from what is believed; off: as planner and wrench say",
+    )
     compensates: Literal["none", "gravity", "gravity+coriolis"] = Field(
         default="none", description="what the robot compensates by itself"
     )
@@ -86,7 +91,7 @@ class TaskParts(Config):
     @model_validator(mode="after")
     def _is_of_one_kind(self) -> TaskParts:
         if not self.phase:
-            said = [name for name in _OF_A_LIST if getattr(self, name) not in ((), {}, None)]
+            said = [name for name in _OF_A_LIST if getattr(self, name) != type(self).model_fields[name].default]
             if said:
                 raise ValueError(f"{said[0]} belongs to a task of [[phase]]; this one has a path on a surface")
             return self

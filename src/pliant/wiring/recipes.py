@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from pydantic import Field
 
 from pliant.controllers.attractor import Law
@@ -20,7 +19,7 @@ from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.interfaces import Needs, ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
-from pliant.rigid_body import mass_matrix
+from pliant.rigid_body import mass_along
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
@@ -80,13 +79,10 @@ def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticCo
 
 def _mass_along(robot: Robot, believed: Believed) -> float:
     """kg that the pressing frame has at home along the believed surface's normal, upwards where there is none."""
-    surface, model = believed.surface, robot.model
+    surface = believed.surface
     normal = np.array([0.0, 0.0, 1.0]) if surface is None else np.array(surface.normal(surface.top()))
     frame = robot.frame_id(believed.presses or believed.frames[0])
-    data = model.createData()
-    J = pin.computeFrameJacobian(model, data, robot.home, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
-    along = normal @ np.array(J)[:3]
-    return 1.0 / float(along @ np.linalg.solve(mass_matrix(model, data, robot.home), along))
+    return mass_along(robot.model, robot.home, frame, normal)
 
 
 def _filter(source: ReferenceSource[Any], robot: Robot, config: HapticConfig) -> ReferenceSource[Any]:

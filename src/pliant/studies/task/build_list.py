@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointE
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.landing import GentleLanding, landed, landings, too_slow
 from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
 from pliant.studies.task.listed import (
     changes_of,
@@ -61,6 +62,8 @@ class Listed:
     """s"""
     tracked: PostureSource | None
     """where frames are tracked"""
+    landings: Mapping[str, GentleLanding] = field(default_factory=dict[str, GentleLanding])
+    """phase → how it comes down to what it touches, where the file does not say it"""
 
 
 def listed(case: TaskCase) -> Listed:
@@ -82,7 +85,8 @@ def listed(case: TaskCase) -> Listed:
     oriented = all(stage.task.rotation is not None for stage in stages)
     surface = pressed_planes(stages, changes_of(case))
     believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None, surface)
-    return Listed(robot, believed, case.controller_parameters(robot, believed), start, _whole(case), None)
+    parameters, gentle = case.controller_parameters(robot, believed), landings(case, robot, stages, start)
+    return Listed(robot, believed, parameters, start, _whole(case), None, gentle)
 
 
 def _not_held(case: TaskCase, made: Listed) -> tuple[str, ...]:
@@ -136,7 +140,7 @@ def build_list(case: TaskCase) -> Experiment:
         joint_limits=case.joint_limits,
         duration=made.duration,
         limits=run_limits(case.limits, frames[0]),
-        warnings=_not_held(case, made),
+        warnings=(*_not_held(case, made), *too_slow(case, made.landings)),
         channels=() if tracking else (Channel(f"planner/{frames[0]}/clamped", "m"),),
     )
     return wired(case.entry, made.parameters, offer)
@@ -194,7 +198,7 @@ def planner_of(
     """Motion through the targets. Args: in_time: each phase lasts as long as it may, whatever is felt, and
     no target is brought back into reach."""
     robot, frame = made.robot, frame_of(case)
-    stages = stages_of(case, robot, robot.placement(made.start, frame)[1])
+    stages = landed(case, stages_of(case, robot, robot.placement(made.start, frame)[1]), made.landings)
     if in_time:
         both = zip(stages, case.phase, strict=True)
         stages = tuple(replace(stage, endings=(Ending(phase.longest),)) for stage, phase in both)

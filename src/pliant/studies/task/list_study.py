@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pliant.experiments.base import Experiment, Result
@@ -11,6 +11,7 @@ from pliant.studies.task.build_list import build_list, listed
 from pliant.studies.task.check import CHECKED_DRAWS, checked_list
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.draw_list import list_figures
+from pliant.studies.task.landing import suggested_landings, told_landing
 from pliant.studies.task.measure_list import check_accept_of_list, measured_list
 from pliant.studies.task.search import Searched
 from pliant.studies.task.task_study import TaskStudy
@@ -31,6 +32,13 @@ class ListStudy(TaskStudy):
     def searched(self, config: TaskCase) -> Searched:
         made = listed(config)
         return Searched(made.robot, made.believed)
+
+    def suggested(self, config: TaskCase) -> Mapping[str, tuple[float, str]]:
+        return suggested_landings(config, listed(config).landings)
+
+    def about(self, config: TaskCase) -> Mapping[str, str]:
+        told = [told_landing(config, name, one) for name, one in listed(config).landings.items()]
+        return {"landing": "; ".join(told)} if told else {}
 
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         return checked_list(config, drawn)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pliant.experiments.base import Experiment, Result
@@ -41,8 +41,9 @@ class PathStudy(TaskStudy):
         made = planned(config)
         return Searched(made.robot, config.believed(made.surface))
 
-    def about(self, config: TaskCase) -> str:
-        return config.surface.geometry(Pose()).described
+    def about(self, config: TaskCase) -> Mapping[str, str]:
+        described = config.surface.geometry(Pose()).described
+        return {"part": described} if described else {}
 
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         return checked_path(config, drawn)

@@ -62,9 +62,9 @@ class TaskStudy(Study[TaskCase]):
     def searched(self, config: TaskCase) -> Searched:
         """What a search over the controller's parameters starts from."""
 
-    def about(self, config: TaskCase) -> str:
-        """What is to be known of how the part is represented; empty if there is nothing."""
-        return ""
+    def about(self, config: TaskCase) -> Mapping[str, str]:
+        """What → what is to be known of it before a run, in a sentence each."""
+        return {}
 
     @abstractmethod
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
