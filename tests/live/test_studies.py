@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,10 +19,12 @@ from pliant.live.loop.tuning import online_fields, online_group, parameters_of
 from pliant.signals import Tick
 
 
-def steer(study_name: str, case: str, ticks: int, at: int, asks: Sequence[Any]) -> tuple[list[Tick], list[Message]]:
-    """Runs a case and does what is asked at a tick. Each entry is a message, or changes of the configuration."""
+def steer(
+    study_name: str, case: str, ticks: int, at: int, asks: Sequence[Any], changes: Mapping[str, Any] | None = None
+) -> tuple[list[Tick], list[Message]]:
+    """Runs a changed case and does what is asked at a tick. Each entry is a message, or changes of the case."""
     study = get_study(study_name)
-    config = merged(study.case(case), {"duration": 1e-3 * ticks})
+    config = merged(study.case(case), {**(changes or {}), "duration": 1e-3 * ticks})
     said: list[Message] = []
     seen: list[Tick] = []
     session = Session(study, config, said.append, 1)

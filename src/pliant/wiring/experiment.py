@@ -31,6 +31,8 @@ class Experiment:
     """what is unsafe about the parameters, in sentences"""
     parameters: ControllerConfig | None = None
     """of the controller, as it was built; None: not known"""
+    model: Robot | None = None
+    """the robot as the controller believes it; None: not known"""
     limits: RunLimits | None = None
     """where a run ends as failed; None: nowhere"""
 

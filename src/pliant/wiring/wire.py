@@ -98,6 +98,7 @@ def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offe
             *offer.warnings,
         ),
         parameters=parameters,
+        model=model,
         limits=offer.limits,
     )
 

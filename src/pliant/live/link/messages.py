@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from pliant.entries import ControllerConfig
 from pliant.environment import Environment, FeltSurface
 from pliant.experiments.base import CaseConfig
+from pliant.live.page.task_error import TaskError
 from pliant.simulation import Imperfections, Scene
 from pliant.spatial import Array
 from pliant.visual_shapes import Look
@@ -31,6 +33,8 @@ class Begin:
     config: CaseConfig
     fresh: bool = True
     """False: surfaces, imperfections and target stay as the page left them"""
+    refused: str = ""
+    """why another run, which was asked for, cannot be: this one ran before it"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +148,11 @@ class Ready(Queued):
     """None: they cannot be changed here"""
     warnings: tuple[str, ...] = ()
     restarts: bool = True
-    """whether case and controller can be chosen"""
+    """whether something else can be chosen to run"""
+    refused: str = ""
+    """why what was asked for does not run; empty: it does"""
+    parameters: ControllerConfig | None = None
+    """of the controller, as they are now; None: not known"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,6 +194,8 @@ class Picture:
     pushes: Mapping[str, tuple[Array, Array]] = field(default_factory=dict[str, tuple[Array, Array]])
     """frame → its position (3,) m and the external force (3,) N on it"""
     phase: str = ""
+    error: TaskError | None = None
+    """of the first frame, while it presses"""
     environments: Mapping[str, Environment] = field(default_factory=dict[str, Environment])
     """frame → estimated stiffness and damping of the contact, where they are estimated"""
     surfaces: Mapping[str, FeltSurface] = field(default_factory=dict[str, FeltSurface])
@@ -207,6 +217,8 @@ class Pulse:
     recording: Path | None
     ended: str | None = None
     """why the run has stopped"""
+    phase: str = ""
+    """of the task"""
 
 
 @dataclass(frozen=True, slots=True)

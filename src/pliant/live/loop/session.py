@@ -29,7 +29,7 @@ from pliant.live.link.messages import (
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.recording import SwitchedRecorder
 from pliant.live.loop.requests import Requests, SharedState
-from pliant.live.loop.steered_controller import SteeredController, with_core
+from pliant.live.loop.steered_controller import SteeredController, core_of, with_core
 from pliant.live.loop.steered_plant import SteeredPlant
 from pliant.live.loop.steered_source import steered
 from pliant.live.loop.tuning import parameters_of, retuning, retuning_of_case
@@ -69,6 +69,9 @@ class Session:
         self.study, self.config, self.built_for = study, config, config
         self._send, self._run, self._restarts = send, run, restarts
         built = self.built = experiment or study.build(config)
+        self.refused = ""
+        """why this run, and not the one that was asked for"""
+        self._parameters = parameters_of(config, built.parameters)
         self.shared = SharedState()
         self.shared.requests = requests or Requests()
         self.plant = SteeredPlant(built.plant, self.shared, config.seed)
@@ -113,6 +116,8 @@ class Session:
                 flaws=self.shared.requests.flaws or self.plant.built,
                 warnings=self.experiment.warnings,
                 restarts=self._restarts,
+                refused=self.refused,
+                parameters=self._parameters,
             )
         )
         self.watch.refresh(now=True)
@@ -164,11 +169,17 @@ class Session:
 
     def retune(self, config: CaseConfig) -> None:
         """Gives the controller the parameters of another configuration. Raises PliantError if it cannot have them."""
-        before, after = parameters_of(self.config), parameters_of(config)
+        before, after = self._parameters, parameters_of(config, self.built.parameters)
         if before is None or after is None:
             change = retuning_of_case(config)
         else:
-            change = retuning(before, after, config, self.experiment.robot, self.plant.period)
+            change = retuning(before, after, config, self.built.model or self.built.robot, self.plant.period)
+        if change.controller is not None and change.controller.needs != core_of(self._core).needs:
+            raise ConfigError(
+                "these parameters need other signals or another horizon than the run was built for: write them into the"
+                " task or case and start it again"
+            )
+        self._parameters = after
         successor = None if change.controller is None else with_core(self._core, change.controller)
         requests = self.shared.requests
         self.shared.requests = replace(

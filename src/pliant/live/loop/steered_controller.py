@@ -47,6 +47,12 @@ class SteeredController(Controller[SteeredControllerState]):
         return command, SteeredControllerState(state.controller, inner, state.request)
 
 
+def core_of(controller: Controller[Any]) -> Controller[Any]:
+    """The controller inside of its wrappers."""
+    inner = getattr(controller, "inner", None)
+    return core_of(inner) if isinstance(inner, Controller) else controller  # pyright: ignore[reportUnknownArgumentType]
+
+
 def with_core(controller: Controller[Any], core: Controller[Any]) -> Controller[Any]:
     """The same wrappers (bounds on the torque, say, whose controller is `inner`) round another core."""
     inner = getattr(controller, "inner", None)

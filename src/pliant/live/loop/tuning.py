@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from pliant.controllers.config import StackConfig
 from pliant.entries import ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.interfaces import Controller
@@ -13,6 +14,8 @@ from pliant.live.page.fields import FieldGroup, Leaf, at, group_of
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
+from pliant.studies.task.config import TaskCase
+from pliant.wiring.recipes import HapticConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +69,18 @@ def _is_online(value: Any) -> bool:
     return callable(find) and isinstance(find(), ImpedanceTuning)
 
 
-def parameters_of(config: CaseConfig) -> ControllerConfig | None:
-    """Typed parameters of the controller that a case has chosen; None if its study offers none."""
+def parameters_of(config: CaseConfig, suited: ControllerConfig | None = None) -> ControllerConfig | None:
+    """Typed parameters of the controller that a case has chosen; None if its study offers none.
+
+    Args:
+        config: of the case.
+        suited: parameters as its loop was built; the configuration of a task holds changes of them alone.
+
+    Raises:
+        ConfigError: a parameter that breaks a rule.
+    """
+    if isinstance(config, TaskCase):
+        return None if suited is None else config.entry.changed(suited, config.control.get(config.controller, {}))
     find = getattr(config, "parameters", None)
     found = find() if callable(find) else None
     return found if isinstance(found, ControllerConfig) else None
@@ -88,8 +101,8 @@ def retuning(
     Raises:
         PliantError: no controller can be built from `after`.
     """
-    tunings = tunings_of(after)
-    whole = _whole(after)
+    tunings = after.impedances()
+    whole = after.whole_tuning()
     if _structure(before) == _structure(after) and (tunings or whole is not None):
         return ParameterChange(tunings, whole, None)
     entry = getattr(config, "entry", None)
@@ -98,28 +111,22 @@ def retuning(
     return ParameterChange(tunings, whole, entry.build(robot, after, period))
 
 
-def tunings_of(config: ControllerConfig) -> Mapping[str, ImpedanceTuning]:
-    """Frame → tuning of the fractal impedances that a configuration describes."""
-    find = getattr(config, "frame_tasks", None)
-    tasks: Any = find() if callable(find) else ()
-    return {task.frame: task.tuning for task in tasks}
-
-
-def _whole(config: ControllerConfig) -> Any:
-    """Tuning of the whole controller, if the configuration can say it as a frozen value."""
-    find = getattr(config, "tuning", None)
-    return find() if callable(find) else None
-
-
 def _structure(config: ControllerConfig) -> Any:
-    """What the references cannot carry: everything but the numbers of the impedances."""
+    """What the references cannot carry: everything but the numbers of impedances and of exploration."""
+    if isinstance(config, HapticConfig):
+        return _structure(config.impedance), config.exploration is None
     values = config.model_dump()
-    if _whole(config) is not None:
-        return type(config)
-    if callable(getattr(config, "frame_tasks", None)):
-        kept = {
-            label: None if task is None else (task["frame"], task["profile"], task["rotation"] is None)
-            for label, task in values["tasks"].items()
-        }
-        return {**values, "tasks": kept}
+    if not isinstance(config, StackConfig):
+        return values
+    kept = {
+        label: None if task is None else (task["frame"], task["profile"], task["rotation"] is None)
+        for label, task in values["tasks"].items()
+    }
+    return {**values, "tasks": kept}
+
+
+def wiring_of(config: CaseConfig) -> dict[str, Any]:
+    """What decides how a loop is built, without the parameters that can be changed while it runs."""
+    values = config.model_dump()
+    values.pop("control", None)
     return values

@@ -95,6 +95,7 @@ class Watch:
         """State of the loop. Args: ended: why the run has stopped."""
         paced = self.report()
         at = 0.0 if self._last is None else self._last.measurement.time
+        phase = "" if self._last is None else self._last.reference.phase
         playing = paced.playing and ended is None
         factor = paced.real_time_factor if playing else 0.0
-        return Pulse(at, playing, factor, self._missed, self._ticks, self.recording(), ended)
+        return Pulse(at, playing, factor, self._missed, self._ticks, self.recording(), ended, phase)

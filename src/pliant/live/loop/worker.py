@@ -5,10 +5,8 @@ from __future__ import annotations
 import signal
 from dataclasses import replace
 from multiprocessing.connection import Connection
-from typing import Any
 
 from pliant.errors import PliantError
-from pliant.experiments.base import CaseConfig
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_length
 from pliant.live.link.messages import Begin, Flow, Message, Note
@@ -16,6 +14,7 @@ from pliant.live.link.pipe import Link
 from pliant.live.loop.pace import Pace
 from pliant.live.loop.requests import Requests
 from pliant.live.loop.session import Session
+from pliant.live.loop.tuning import wiring_of
 
 
 def main(connection: Connection) -> None:
@@ -56,10 +55,11 @@ class Worker:
     def _run(self, begin: Begin) -> None:
         self._runs += 1
         try:
-            session = self._session = self._wire(begin)
+            session = self._wire(begin)
         except PliantError as error:
-            self._link.send(Note("failed", str(error)))
+            self._refuse(begin, str(error))
             return
+        self._session = session
         pace = Pace(session.plant.period, lambda: self._attend(session, pace), self._link.wait)
         pace.flow = replace(self._flow)
         session.observe(pace)
@@ -77,15 +77,25 @@ class Worker:
         if self._begin is None:
             self._after(begin, session, failure)
 
+    def _refuse(self, begin: Begin, reason: str) -> None:
+        """Says why a run cannot be; the one before it, if there was one, begins again."""
+        if self._session is None or begin.refused:
+            self._link.send(Note("failed", reason))
+            return
+        before = self._session
+        self._link.send(Note("refused", reason))
+        self._begin = Begin(before.study.name, before.config, fresh=False, refused=reason)
+
     def _wire(self, begin: Begin) -> Session:
         """The loop of a run. One that differs in the controller's parameters alone is not built again."""
         study, before = get_study(begin.study), self._session
-        if before is None or before.study is not study or _wiring(before.built_for) != _wiring(begin.config):
+        if before is None or before.study.name != begin.study or wiring_of(before.built_for) != wiring_of(begin.config):
             return Session(study, begin.config, self._link.send, self._runs)
         requests = Requests() if begin.fresh else replace(before.shared.requests, pull=None)
         session = Session(
             study, before.built_for, self._link.send, self._runs, experiment=before.built, requests=requests
         )
+        session.refused = begin.refused
         if begin.config != before.built_for:
             session.retune(begin.config)
         return session
@@ -124,10 +134,3 @@ class Worker:
                 session.obey(message, pace)
             elif isinstance(message, Flow):
                 self._flow = message
-
-
-def _wiring(config: CaseConfig) -> dict[str, Any]:
-    """What decides how a loop is built, without the parameters that can be changed while it runs."""
-    values = config.model_dump()
-    values.pop("control", None)
-    return values

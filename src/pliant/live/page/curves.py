@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pliant.live.page.task_error import motion_axes, position_error, position_errors
 from pliant.signals import Tick
 from pliant.simulation import Push
 from pliant.spatial import Array
@@ -51,7 +52,8 @@ class Columns:
             task = tick.reference.tasks[0]
             desired = task.wrench[:3]
             actual = None if tick.truth is None else tick.truth.positions.get(task.frame)
-            error = _NAN3 if actual is None else (task.position - actual) * _M_TO_MM
+            if actual is not None:
+                error = position_error((task.position - actual) * _M_TO_MM, motion_axes(task))
         diagnostics = tick.command.diagnostics
         asked = np.asarray(diagnostics[self.command_wrench])[:3] if self.command_wrench else ()
         push = np.sum([p.force for p in pushes], axis=0) if pushes else _ZERO3
@@ -71,7 +73,8 @@ class Columns:
         asked = _channel(log, (made.command_wrench,), time, 3) if made.command_wrench else np.empty((len(time), 0))
         desired = _channel(log, (f"reference/{f}/wrench",), time, 3)
         target = _channel(log, (f"reference/{f}/position",), time, 3)
-        error = _M_TO_MM * (target - _channel(log, (f"truth/{f}/position",), time, 3))
+        apart = _M_TO_MM * (target - _channel(log, (f"truth/{f}/position",), time, 3))
+        error = position_errors(apart, np.nan_to_num(desired))
         energies = [_channel(log, (f"energy/{name}",), time, 1) for name in made.energies]
         parts = [time[:, None], contact, asked, desired, error]
         return made, np.hstack([*parts, *energies, log["command/torque"]])

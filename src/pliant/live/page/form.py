@@ -12,27 +12,45 @@ import viser
 
 from pliant.errors import PliantError
 from pliant.live.link.steering_lock import SteeringLock
+from pliant.live.page.basic import apart
 from pliant.live.page.fields import FieldGroup, Leaf, Path
 
+WATCHING = ("You are watching", "Another browser steers. Take over on the tab Run.")
 Change = Callable[[Path, Any], None]
 """takes a new value at a place; raises PliantError if it may not be"""
 
 
 class Form:
-    """The controls of one group of values. Args: gui: the page. steering: which browser may change values.
-    group: what there is to change.
-    change: called with every new value.
-    expanded: whether folders of the first level are open.
+    """The controls of one group of values.
+
+    Args:
+        gui: the page.
+        steering: which browser may change values.
+        group: what there is to change.
+        change: called with every new value.
+        expanded: whether folders of the first level are open.
+        basic: says of a value that it is basic; the others go into a folder of their own. None: all are.
     """
 
     def __init__(
-        self, gui: viser.GuiApi, steering: SteeringLock, group: FieldGroup, change: Change, *, expanded: bool = True
+        self,
+        gui: viser.GuiApi,
+        steering: SteeringLock,
+        group: FieldGroup,
+        change: Change,
+        *,
+        expanded: bool = True,
+        basic: Callable[[Leaf], bool] | None = None,
     ) -> None:
         self._gui, self._steering, self._change = gui, steering, change
         self._lock = threading.RLock()
         self._whole = gui.add_folder(None)
+        first, rest = (group, None) if basic is None else apart(group, basic)
         with self._whole:
-            self._fill(group, expanded, 0)
+            self._fill(first, expanded, 0)
+            if rest is not None and rest.entries:
+                with gui.add_folder("Advanced", expand_by_default=False):
+                    self._fill(rest, False, 0)
 
     def remove(self) -> None:
         """Removes the controls from the page."""
@@ -58,7 +76,7 @@ class Form:
                     return
                 if not self._steering.allows(event.client_id):
                     handle.value = good
-                    tell(event, "You are watching", "Another browser steers. Take over on the tab Run.")
+                    tell(event, *WATCHING)
                     return
                 try:
                     self._change(leaf.path, parsed(leaf, handle.value))

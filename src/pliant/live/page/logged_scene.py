@@ -11,6 +11,8 @@ from pliant.errors import OutputError
 from pliant.experiments.drawn import drawn_log
 from pliant.live.link.messages import Picture
 from pliant.live.page.curves import Columns
+from pliant.live.page.task_error import TaskError
+from pliant.signals import TaskReference
 from pliant.spatial import Array
 from pliant.telemetry.log import Log
 from pliant.visual_shapes import Poser, looks_of
@@ -72,6 +74,7 @@ class LoggedScene:
             asked=self._asked(moment),
             predicted_path=self._rows("mpc/predicted_path", moment),
             predicted_force=self._rows("mpc/predicted_force", moment),
+            error=self._error(moment),
             environments=self._environments(moment),
         )
 
@@ -108,6 +111,14 @@ class LoggedScene:
             if all(number is not None for number in numbers):
                 found[frame] = Environment(*(float(np.squeeze(number)) for number in numbers if number is not None))
         return found
+
+    def _error(self, at: float) -> TaskError | None:
+        f = self.columns.frame
+        names = (f"reference/{f}/position", f"reference/{f}/wrench", f"truth/{f}/position", f"truth/{f}/wrench")
+        target, asked, place, wrench = (self._value(name, at) for name in names)
+        if target is None or asked is None or place is None or wrench is None:
+            return None
+        return TaskError.of(TaskReference(f, target, wrench=asked), place, wrench[:3])
 
     def _asked(self, at: float) -> Array:
         for channel in (f"reference/{self.columns.frame}/wrench", self.columns.command_wrench):

@@ -8,6 +8,7 @@ import numpy as np
 
 from pliant.live.link.messages import Picture
 from pliant.live.page.curves import Columns
+from pliant.live.page.task_error import TaskError
 from pliant.signals import Reference, Tick
 from pliant.simulation import Push
 from pliant.spatial import Array
@@ -53,6 +54,7 @@ def picture(
         predicted_force=_predicted(tick, "mpc/predicted_force", None),
         pushes=_pushes(pushes, body),
         phase=reference.phase,
+        error=_error(tick),
         environments=dict(tick.estimate.environments),
         surfaces=dict(tick.estimate.surfaces),
     )
@@ -66,6 +68,15 @@ def _forces(tick: Tick, body: Poser) -> Mapping[str, tuple[Array, Array]]:
         if at is not None:
             found[frame] = at, wrench[:3]
     return found
+
+
+def _error(tick: Tick) -> TaskError | None:
+    """Of the first task, on what really happens; of a robot that is not simulated nothing is known for sure."""
+    if tick.truth is None or not tick.reference.tasks:
+        return None
+    task = tick.reference.tasks[0]
+    place, wrench = tick.truth.positions.get(task.frame), tick.truth.wrenches.get(task.frame)
+    return None if place is None or wrench is None else TaskError.of(task, place, wrench[:3])
 
 
 def _asked(tick: Tick, columns: Columns) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 import viser
 
 from pliant.live.page.curves import AXES
+from pliant.live.page.narrow_windows import NarrowWindows
 from pliant.spatial import Array
 
 WINDOW = 10.0  # s
@@ -27,6 +28,8 @@ class Plot:
 
     handle: viser.GuiUplotHandle
     columns: tuple[str, ...]
+    known: tuple[bool, ...]
+    """of each curve: whether it is shown, since each of its values is a number"""
 
 
 class Plots:
@@ -41,6 +44,7 @@ class Plots:
         self._panel = server.gui.add_panel()
         self._panel.dock_left()
         self._panel.set_width(_PANEL_WIDTH)
+        NarrowWindows(server, self._panel)
         self._contact = self._panel.add_tab("Contact", viser.Icon.CHART_LINE)
         self._effort = self._panel.add_tab("Effort", viser.Icon.GAUGE)
         with self._contact:
@@ -105,7 +109,12 @@ class Plots:
         recent = self._rows[self._rows[:, 0] >= self._rows[-1, 0] - WINDOW]
         time = np.round(recent[:, 0], 3)
         for plot in self._plots:
-            plot.handle.data = (time, *(np.nan_to_num(np.round(self._curve(recent, name), 4)) for name in plot.columns))
+            curves = [np.round(self._curve(recent, name), 4) for name in plot.columns]
+            known = tuple(bool(np.isfinite(curve).all()) for curve in curves)
+            if known != plot.known:
+                plot.known = known
+                plot.handle.series = (plot.handle.series[0], *map(_seen, plot.handle.series[1:], known))
+            plot.handle.data = (time, *map(np.nan_to_num, curves))
 
     def latest(self, name: str) -> float:
         """The last value of a column, or of the magnitude of a vector; NaN before there is one."""
@@ -139,7 +148,12 @@ class Plots:
             height=_HEIGHT,
             padding=(6, 10, 0, 0),
         )
-        return Plot(handle, columns)
+        return Plot(handle, columns, tuple(True for _ in columns))
+
+
+def _seen(series: Any, known: bool) -> Any:
+    """The look of a curve. Args: known: whether each of its values is a number; browsers draw no gaps."""
+    return {**series, "show": known}
 
 
 def _axis(label: str, size: int) -> Any:

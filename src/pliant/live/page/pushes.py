@@ -12,7 +12,7 @@ import viser
 
 from pliant.live.link.messages import Message, Picture, Pull, PushNow
 from pliant.live.link.steering_lock import SteeringLock
-from pliant.live.page.form import tell
+from pliant.live.page.form import WATCHING, tell
 from pliant.spatial import Array
 
 _DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
@@ -79,7 +79,7 @@ class PushControls:
 
     def _push(self, event: viser.GuiEvent[Any]) -> None:
         if not self._steering.allows(event.client_id):
-            tell(event, "You are watching", "Another browser steers. Take over on the tab Run.")
+            tell(event, *WATCHING)
             return
         x, y, z = (self._force.value * part for part in _DIRECTIONS[self._direction.value])
         self._send(PushNow(self.frame, (x, y, z), self._duration.value))

@@ -14,6 +14,7 @@ import numpy as np
 import viser
 
 from pliant.live.link.steering_lock import SteeringLock
+from pliant.live.page.error_trail import ErrorTrail
 from pliant.live.page.estimates_panel import EstimatesPanel
 from pliant.live.page.logged_scene import LoggedScene
 from pliant.live.page.plots import Plots
@@ -52,6 +53,7 @@ class ReplayPage:
         self._play = gui.add_button("Pause", icon=viser.Icon.PLAYER_PAUSE)
         self._speed = gui.add_dropdown("speed", tuple(_SPEEDS), initial_value="1×")
         self._status = gui.add_markdown("")
+        self.trail = ErrorTrail(self._viser)
         self.estimates = EstimatesPanel(self._viser)
         self._play.on_click(self._toggle)
         self._slider.on_update(self._seek)
@@ -75,11 +77,13 @@ class ReplayPage:
                 self._now += (now - before) * _SPEEDS[self._speed.value]
                 if self._now > self._end:
                     self._now = self._start
+                    self.trail.forget()
                 self._ours = round(self._now, 3)
                 self._slider.value = self._ours
             before = now
             picture = self._shown.picture(self._now)
             self.view.draw(picture)
+            self.trail.follow(picture.error, self.view.faces)
             self.estimates.show(picture)
             if count % 3 == 0:
                 self.plots.show(self._shown.curves(self._now, 10.0))

@@ -86,6 +86,11 @@ class SceneView:
         for client in self._server.get_clients().values():
             client.camera.position, client.camera.look_at = eye, middle
 
+    @property
+    def faces(self) -> tuple[Plane | Part, ...]:
+        """Surfaces of the scene that cannot move."""
+        return self._faces
+
     def stage(self, looks: Sequence[Look], bodies: int, scene: Scene | None) -> None:
         """Shows the robot and the things; removes what was shown before."""
         with self._server.atomic():

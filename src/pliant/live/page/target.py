@@ -11,7 +11,7 @@ import viser
 
 from pliant.live.link.messages import Aim, Message, Picture
 from pliant.live.link.steering_lock import SteeringLock
-from pliant.live.page.form import tell
+from pliant.live.page.form import WATCHING, tell
 from pliant.spatial import Array
 
 
@@ -84,7 +84,7 @@ class TargetControls:
                 return
             if not self._steering.allows(event.client_id):
                 self._offset.value, self._force.value = self._aim.offset, 100.0 * self._aim.force_scale
-                tell(event, "You are watching", "Another browser steers. Take over on the tab Run.")
+                tell(event, *WATCHING)
                 return
             self._aim = aim
             self._send(aim)

@@ -1,4 +1,4 @@
-"""Force and speed of the task that runs, on the first tab."""
+"""Force, speed and path of the task that runs, on the first tab."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ import viser
 from pliant.experiments.base_config import Dial
 from pliant.live.link.messages import Message, TaskScaling
 from pliant.live.link.steering_lock import SteeringLock
-from pliant.live.page.form import tell
-from pliant.live.page.run_controls import WATCHING
+from pliant.live.page.form import WATCHING, tell
 
 _SLOWEST = 0.1
 """share of the task's speed; at zero the task would not end"""
@@ -33,7 +32,8 @@ class TaskControls:
     def __init__(self, server: viser.ViserServer, steering: SteeringLock, send: Callable[[Message], None]) -> None:
         self._gui, self._steering, self._send = server.gui, steering, send
         self._lock = threading.RLock()  # assigning to a control calls back at once
-        self._folder = server.gui.add_folder("Task", visible=False)
+        self.folder = server.gui.add_folder("Task", visible=False)
+        """where they stand; the path's controls are beside them"""
         self._dials: tuple[Dial, ...] = ()
         self._sliders: dict[str, viser.GuiSliderHandle[float]] = {}
         self._scaling = TaskScaling()
@@ -45,8 +45,8 @@ class TaskControls:
             for slider in self._sliders.values():
                 slider.remove()
             self._dials, self._sliders = dials, {}
-            self._folder.visible = bool(dials)
-            with self._folder:
+            self.folder.visible = bool(dials)
+            with self.folder:
                 for dial in dials:
                     self._sliders[dial.name] = self._slider(dial)
 

@@ -9,6 +9,8 @@ from pliant.live.server.access import AccessControl, is_loopback, listen, new_to
 from pliant.live.server.protected import protected_viser, silent
 
 _BRAND = (11, 111, 184)
+_MESSAGES_UNDER_PANELS = "<style>.mantine-Notifications-root { z-index: 3 !important }</style>"
+"""messages lie over the scene, and under panels that reach there: panels have the z-index 5"""
 
 
 class PageServer:
@@ -39,6 +41,7 @@ class PageServer:
         gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BRAND, control_width="medium")
         gui.main_panel.dock_right()
         gui.main_panel.set_width(356)
+        gui.add_html(_MESSAGES_UNDER_PANELS)
 
     def stop(self) -> None:
         """Closes the page."""
