@@ -11,9 +11,10 @@ from typing import Any, TypeVar
 
 from pliant.errors import ConfigError, PliantError, RobotError, RunFailedError, ShapeError, told
 from pliant.guard import Fault, Guard
+from pliant.guard.border import Watched
 from pliant.interfaces import Controller, Estimator, Observer, Plant, ReferenceSource
 from pliant.robot import Robot
-from pliant.signals import Tick
+from pliant.signals import Command, Estimate, Measurement, Reference, Tick
 
 _Signal = TypeVar("_Signal")
 _WHATEVER = (Exception, SystemExit, GeneratorExit)
@@ -64,56 +65,79 @@ def run(
     """
     guard = Guard(plant, robot)
     measurement, world = plant.init()
-    est = ref = ctl = estimate = reference = command = watched = None
-    ticks, now = 0, 0.0
+    cycle = _Cycle(guard, estimator, source, controller)
+    ticks = 0
     for _ in clock:
-        start = planned = time.perf_counter()
-        fresh = command is None  # the first tick: every part starts
         try:
-            watched = watched or guard.init(measurement)
-            fault = guard.measurement(measurement, watched)
-            now = guard.now(measurement, watched)
-            if not fault:
-                est = estimator.init(measurement) if fresh else est
-                found, est = _pair(estimator.step(measurement, est), "estimator")
-                fault = guard.estimate(found, watched)
-                estimate = estimate if fault else found
-            if not fault and estimate is not None:
-                ref = source.init(estimate) if fresh else ref
-                wanted, ref = _pair(source.step(estimate, ref), "source")
-                fault = guard.reference(wanted, watched)
-                reference = reference if fault else wanted
-            if not fault and estimate is not None and reference is not None:
-                ctl = controller.init(estimate) if fresh else ctl
-                planned = time.perf_counter()
-                answer, ctl = _pair(controller.step(estimate, reference, ctl), "controller")
-                answer, fault = guard.command(answer, watched)
-                command = command if fault is Fault.COMMAND else answer
-            if estimate is None or reference is None or command is None:
-                raise guard.why_not(fault, watched)
-            command = guard.settled(command, fault, measurement, watched)
-            wall = {"plan": planned - start, "control": time.perf_counter() - planned}
-            tick = Tick(
-                guard.shown(fault, measurement, watched),
-                estimate,
-                reference,
-                command,
-                plant.truth(world),
-                wall,
-                int(fault),
-            )
+            estimate, reference, command, wall, fault = cycle.step(measurement)
+            seen = guard.shown(fault, measurement, cycle.watched)
+            tick = Tick(seen, estimate, reference, command, plant.truth(world), wall, int(fault))
         except _WHATEVER as error:  # that a part raises: the run ends in order
-            if command is None and isinstance(error, ConfigError | ShapeError | RobotError):
+            if cycle.command is None and isinstance(error, ConfigError | ShapeError | RobotError):
                 raise  # parts that do not fit together: nothing has run
-            return _ended(ticks, now, error)
+            return _ended(ticks, cycle.now, error)
         for observe in observers:
             observe(tick)  # an observer's error is its own: a full disk is not the robot's failure
         try:
             measurement, world = _pair(plant.step(command, world), "plant")
         except _WHATEVER as error:
-            return _ended(ticks, now, error)
+            return _ended(ticks, cycle.now, error)
         ticks += 1
     return Outcome(ticks, measurement.time)
+
+
+class _Cycle:
+    """From a measurement to a command: the guarded parts, with their states and their last valid signals."""
+
+    def __init__(
+        self, guard: Guard, estimator: Estimator[Any], source: ReferenceSource[Any], controller: Controller[Any]
+    ) -> None:
+        self._guard, self._estimator, self._source, self._controller = guard, estimator, source, controller
+        self._est: Any = None
+        self._ref: Any = None
+        self._ctl: Any = None
+        self._estimate: Estimate | None = None
+        self._reference: Reference | None = None
+        self._watched: Watched | None = None
+        self.command: Command | None = None
+        """None before the first command"""
+        self.now = 0.0
+        """s, time of the last measurement"""
+
+    @property
+    def watched(self) -> Watched:
+        """State of the guard, from the first measurement on."""
+        assert self._watched is not None
+        return self._watched
+
+    def step(self, measurement: Measurement) -> tuple[Estimate, Reference, Command, dict[str, float], Fault]:
+        """The signals of a tick, the wall time of its stages in s, and its fault. Raises what a part raises."""
+        start = planned = time.perf_counter()
+        guard, fresh = self._guard, self.command is None  # the first tick: every part starts
+        watched = self._watched = self._watched or guard.init(measurement)
+        fault = guard.measurement(measurement, watched)
+        self.now = guard.now(measurement, watched)
+        if not fault:
+            est = self._estimator.init(measurement) if fresh else self._est
+            found, self._est = _pair(self._estimator.step(measurement, est), "estimator")
+            fault = guard.estimate(found, watched)
+            self._estimate = self._estimate if fault else found
+        if not fault and (estimate := self._estimate) is not None:
+            ref = self._source.init(estimate) if fresh else self._ref
+            wanted, self._ref = _pair(self._source.step(estimate, ref), "source")
+            fault = guard.reference(wanted, watched)
+            self._reference = self._reference if fault else wanted
+        if not fault and (estimate := self._estimate) is not None and (reference := self._reference) is not None:
+            ctl = self._controller.init(estimate) if fresh else self._ctl
+            planned = time.perf_counter()
+            answer, self._ctl = _pair(self._controller.step(estimate, reference, ctl), "controller")
+            answer, fault = guard.command(answer, watched)
+            self.command = self.command if fault is Fault.COMMAND else answer
+        if self._estimate is None or self._reference is None or self.command is None:
+            raise guard.why_not(fault, watched)
+        self.command = guard.settled(self.command, fault, measurement, watched)
+        wall = {"plan": planned - start, "control": time.perf_counter() - planned}
+        return self._estimate, self._reference, self.command, wall, fault
 
 
 def _pair(answer: tuple[_Signal, Any], part: str) -> tuple[_Signal, Any]:

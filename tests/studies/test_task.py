@@ -213,9 +213,9 @@ def test_the_force_follows_the_normal_that_is_felt(tmp_path: Path) -> None:
         late = (time > 0.5 * (ends["follow"] + ends["release"])) & (time < ends["release"])
         errors[along] = float(np.abs(wrench[late] @ true - 20.0).mean())
         if along == "estimated":
-            felt = log["surface/normal"][-1]
+            felt = log["estimate/tool/surface/normal"][-1]
             assert math.degrees(math.acos(float(felt @ true))) < 1.0
-            assert math.degrees(float(log["surface/normal_std"][-1])) < 1.5
+            assert math.degrees(float(log["estimate/tool/surface/normal_std"][-1])) < 1.5
             pushes = wrench[late] / np.linalg.norm(wrench[late], axis=1, keepdims=True)
             assert np.median(np.degrees(np.arccos(pushes @ true))) > 10.0  # what the force's direction would say
     assert errors["estimated"] < errors["believed"], errors

@@ -16,10 +16,8 @@ from pliant.interfaces import ReferenceSource
 from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array, exp3
 
-CHANNELS: Mapping[str, str] = MappingProxyType(
-    {"surface/turn": "rad", "surface/normal": "1", "surface/normal_std": "rad"}
-)
-"""name of each channel of the log → unit; the normal is zero before the first contact"""
+CHANNELS: Mapping[str, str] = MappingProxyType({"surface/turn": "rad"})
+"""name → unit of the channel with the turn of the references; `estimate/FRAME/surface/…` has the estimate"""
 _MEMORY = 0.2  # s
 
 
@@ -60,13 +58,11 @@ class OnFeltSurface(ReferenceSource[FeltSurfaceState]):
     def step(self, estimate: Estimate, state: FeltSurfaceState) -> tuple[Reference, FeltSurfaceState]:
         reference, inner = self.inner.step(estimate, state.inner)
         felt, turn = estimate.surfaces.get(self.frame), state.turn
-        normal, std = np.zeros(3), math.pi
         if felt is not None:
             share = -math.expm1(-max(estimate.time - state.time, 0.0) / self.memory)
-            turn, normal, std = turn + share * (felt.turn - turn), felt.normal, felt.normal_std
+            turn = turn + share * (felt.turn - turn)
             reference = turned(reference, exp3(turn), felt.pivot, self.frame)
-        said = {"surface/turn": turn, "surface/normal": normal, "surface/normal_std": std}
-        reference = changed(reference, diagnostics={**reference.diagnostics, **said})
+        reference = changed(reference, diagnostics={**reference.diagnostics, "surface/turn": turn})
         return reference, FeltSurfaceState(inner, estimate.time, turn)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from pliant.errors import ConfigError, ShapeError
 from pliant.signals import TaskReference, Tick
 from pliant.telemetry.channels import Channel, ChannelGroup, Groups
-from pliant.telemetry.environment_channels import environment_channels
+from pliant.telemetry.contact_channels import contact_groups
 from pliant.telemetry.info import RunInfo
 
 SIGNALS = ("measurement", "estimate", "reference", "command", "truth")
@@ -52,6 +52,7 @@ def signature(tick: Tick) -> tuple[Any, ...]:
         tuple(estimate.wrenches),
         tuple(estimate.contacts),
         tuple(estimate.environments),
+        tuple(estimate.surfaces),
         estimate.disturbance is None,
         tuple([_task_signature(task) for task in reference.tasks]),
         reference.posture is None,
@@ -98,7 +99,8 @@ def groups(tick: Tick, info: RunInfo, units: Sequence[Channel] = ()) -> Groups:
     if contacts := tuple(tick.estimate.contacts):
         named = tuple(Channel(f"estimate/{frame}/contact", "1") for frame in contacts)
         scalars.append(_mapping("estimate.contacts", contacts, named))
-    scalars += [environment_channels(frame) for frame in tick.estimate.environments]
+    more_arrays, more_scalars = contact_groups(tick.estimate)
+    signals, scalars = signals + more_arrays, scalars + more_scalars
     _check_unique([channel.name for group in (*signals, *arrays, *scalars) for channel in group.channels])
     return Groups(tuple(signals), tuple(arrays), tuple(scalars))
 

@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from pliant.environment import Environment
+from pliant.environment import Environment, FeltSurface
 from pliant.errors import OutputError
 from pliant.experiments.drawn import drawn_log
 from pliant.live.link.messages import Picture
@@ -47,6 +47,9 @@ class LoggedScene:
         self._q = log["truth/q" if "truth/q" in log else "measurement/q"]
         self._wrenches = {name.split("/")[1]: name for name in log.matching("/wrench") if name.startswith("truth/")}
         self._felt = [name.split("/")[1] for name in log.matching("/stiffness_std") if name.startswith("estimate/")]
+        self._surfaces = [
+            name.split("/")[1] for name in log.matching("/surface/normal") if name.startswith("estimate/")
+        ]
         self._objects = {name.split("/")[2]: name for name in log.channels if name.startswith("truth/objects/")}
 
     def picture(self, at: float) -> Picture:
@@ -76,6 +79,7 @@ class LoggedScene:
             predicted_force=self._rows("mpc/predicted_force", moment),
             error=self._error(moment),
             environments=self._environments(moment),
+            surfaces=self._estimated_surfaces(moment),
         )
 
     def curves(self, at: float, window: float) -> Array:
@@ -102,6 +106,16 @@ class LoggedScene:
             place, wrench = self._body.frame(frame), self._value(channel, at)
             if place is not None and wrench is not None:
                 found[frame] = place, wrench[:3]
+        return found
+
+    def _estimated_surfaces(self, at: float) -> dict[str, FeltSurface]:
+        found: dict[str, FeltSurface] = {}
+        for frame in self._surfaces:
+            pivot, turn, normal, std = (
+                self._value(f"estimate/{frame}/surface/{part.name}", at) for part in fields(FeltSurface)
+            )
+            if pivot is not None and turn is not None and normal is not None and std is not None:
+                found[frame] = FeltSurface(pivot, turn, normal, float(np.squeeze(std)))
         return found
 
     def _environments(self, at: float) -> dict[str, Environment]:
