@@ -14,7 +14,7 @@ def overlaid(kind: type[BaseModel] | None, base: Any, changes: Mapping[str, Any]
     """The values with some replaced.
 
     Tables are merged key by key; a table of plain numbers, or one of several forms, is one value. A table in place of a
-    list of tables changes those that it names: `phase.circle.duration`.
+    list of tables changes those that it names: `phase.circle.duration`; one that says its own name is added at the end.
 
     Args:
         kind: what the values are of, as far as it is known.
@@ -51,6 +51,9 @@ def _by_name(
     """A list of tables with some of them changed. Raises ConfigError: a name that none of them has."""
     names, result = _named(base), list[Any](base)
     for name, value in changes.items():
+        if name not in names and isinstance(value, Mapping) and value.get("name") == name:
+            result.append(value)
+            continue
         if name not in names:
             raise ConfigError(f"{key} has nothing called {name!r}; {options(names, name)}")
         place = names.index(name)

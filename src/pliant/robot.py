@@ -236,7 +236,7 @@ class Robot:
     def touching_with(self, tool: Tool) -> Robot:
         """The robot, which already has the tool's frame, with the tool's shape as contact shape."""
         bodies = dict(self.contact_bodies) | ({tool.frame: tool.body} if tool.body else {})
-        return replace(self, contact_bodies=bodies) if tool.body else self.with_contact(tool.frame, tool.radius)
+        return replace(self, contact_bodies=bodies) if tool.body else self.with_contact(tool.frame, tool.reach)
 
     def with_tool(self, tool: Tool) -> Robot:
         """The robot with a tool on its flange; adds its inertia, visual shape and contact frame."""

@@ -55,6 +55,8 @@ def test_one_phase_of_a_list_is_changed_by_its_name(tmp_path: Path) -> None:
     assert [phase.wrench for phase in hard.phase] == [None, (0.0, 0.0, 20.0)]
     assert load_task(path).phase[1].wrench == (0.0, 0.0, 9.0)
     assert merged(hard, {"phase": {"down": {"duration": 1.5}}}).phase[0].duration == 1.5
+    written(tmp_path, text + '[variant.more.phase.rest]\nname = "rest"\nduration = 4.0\n', "b.toml")
+    assert [phase.duration for phase in load_task(path, "more").phase] == [3.0, 2.0, 4.0]
     written(tmp_path, text + "[variant.odd.phase.don]\nduration = 1.0\n", "b.toml")
     with pytest.raises(
         ConfigError, match=r"b\.toml: phase has nothing called 'don'; valid: '2', 'down' .*did you mean 'down'"

@@ -45,12 +45,17 @@ class Tool:
     """what touches: a ball of that radius about the frame, the rod itself, or a block"""
     edges: tuple[float, float] = (0.04, 0.04)
     """m of the end face of a box, along the flange's x and y axes"""
+    ball: float | None = None
+    """m, radius of the ball that touches; None: that of the rod"""
 
     def check(self) -> None:
         """Raises ConfigError for a shape that there is not, or a size or mass that it cannot have."""
         if self.shape not in get_args(ToolShape):
             raise ConfigError(f"unknown shape of a tool {self.shape!r}; {options(get_args(ToolShape), self.shape)}")
-        if not (self.length > 0.0 and self.mass >= 0.0 and self.radius > 0.0 and min(self.edges) > 0.0):
+        if (
+            not (self.length > 0.0 and self.mass >= 0.0 and self.radius > 0.0 and min(self.edges) > 0.0)
+            or self.ball == 0.0
+        ):
             raise ConfigError(f"a tool needs length > 0, mass >= 0, radius > 0 and edges > 0, got {self}")
 
     @property
@@ -64,7 +69,9 @@ class Tool:
     @property
     def reach(self) -> float:
         """m from the frame to what the tool touches, upright on a face."""
-        return self.radius if self.shape == "sphere" else 0.0
+        if self.shape != "sphere":
+            return 0.0
+        return self.radius if self.ball is None else self.ball
 
     @property
     def inertia(self) -> pin.Inertia:

@@ -19,7 +19,7 @@ class Estimation(Config):
         None,
         "s",
         "of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, where a path is polished"
-        " or wiped and in lists of phases whose timing is late, else 0",
+        " or wiped and in lists of phases that are timed or whose timing is late, else 0",
         ge=0.0,
         le=100.0,
     )

@@ -50,6 +50,9 @@ class ToolConfig(Config):
         " simulation.contact = 'explicit'",
     )
     radius: float = quantity(0.015, "m", "of the ball that touches, or of the cylinder", gt=0.0, le=0.5)
+    shaft: float | None = quantity(
+        None, "m", "radius of the rod that carries a ball; none: that of the ball", gt=0.0, le=0.5
+    )
     edges: tuple[float, float] | None = quantity(
         None, "m", "of a box: those of its end face, along the flange's x and y axes"
     )
@@ -60,6 +63,8 @@ class ToolConfig(Config):
     def _can_be(self) -> ToolConfig:
         if (self.shape == "box") != (self.edges is not None):
             raise ValueError("tool.edges and tool.shape = 'box' go together")
+        if self.shaft is not None and self.shape != "sphere":
+            raise ValueError(f"tool.shaft carries a ball, tool.shape = 'sphere'; got {self.shape!r}")
         if self.edges is not None and not 0.0 < min(self.edges) <= max(self.edges) <= 1.0:
             raise ValueError(f"tool.edges are above zero and at most 1 m, got {list(self.edges)}")
         return self
@@ -67,6 +72,8 @@ class ToolConfig(Config):
     def tool(self, unknown_mass: float = 0.0) -> Tool:
         """As the robot carries it. Args: unknown_mass: kg of the real tool beside the known ones."""
         made = Tool(self.length, self.mass + unknown_mass, self.radius, self.parent, self.frame, self.shape)
+        if self.shaft is not None:
+            made = replace(made, radius=self.shaft, ball=self.radius)
         return made if self.edges is None else replace(made, edges=self.edges)
 
 
@@ -193,7 +200,8 @@ class TruthConfig(Config):
     joint_damping: float = quantity(0.0, "N·m·s/rad", "of each joint", ge=0.0, le=1e4)
     imperfections: Literal["none", "p3", "p3-without-torque-loop"] | dict[str, Any] = Field(
         default="none",
-        description="of sensors, drives and computation: none; p3: those of [FFMPC] sec. VI-B; or a table of values",
+        description="of sensors, drives and computation: none; p3: those of [FFMPC] sec. VI-B; or a table of values, in"
+        " which `base` names the one that it changes",
     )
 
 
@@ -201,6 +209,9 @@ class Disturbance(Config):
     """A push from outside, or one after the other."""
 
     push: Drawn | Vector = quantity(15.0, "N", "a force in the world's axes, or its size in a random direction")
+    direction: Literal["any", "level"] = Field(
+        default="any", description="of a push of which only the size is given: any, or any horizontal one"
+    )
     frame: str = Field(default="elbow", description="that is pushed")
     start: float = quantity(4.0, "s", "of the push; of the first gap, where there is one", ge=0.0)
     duration: Drawn = quantity(0.4, "s", "of a push, above zero")

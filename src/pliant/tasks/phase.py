@@ -12,27 +12,21 @@ from pliant.quantity import quantity
 from pliant.surfaces import EdgeSurface, HoleSurface
 from pliant.tasks.draws import Drawn
 from pliant.tasks.parts import Pose, Vector
+from pliant.tasks.timed import CurveConfig, PhaseMotion, WrenchProfile
 
 PerAxis = float | Vector
 """one number for x, y and z, or one for each"""
 Mode = Literal["motion", "force", "free"]
 
 
-class Track(Config):
+class Track(CurveConfig):
     """A motion in free space that starts from rest."""
 
-    shape: Literal["lemniscate", "line", "hold"] = Field(
-        description="lemniscate: across·sin(4πt/T) and up·sin(2πt/T); line: to and fro; hold: one place"
+    shape: Literal["lemniscate", "line", "circle", "hold"] = Field(
+        description="lemniscate: across·sin(4πt/T) and up·sin(2πt/T); line: to and fro; circle: from −across, upwards;"
+        " hold: one place"
     )
-    size: tuple[float, float] = quantity((0.1, 0.2), "m", "amplitudes across and up; of a line the first alone")
-    period: float = quantity(4.0, "s", "T of a lemniscate", ge=0.01, le=1e4)
-    peak_speed: float = quantity(0.4, "m/s", "of a line", gt=0.0, le=100.0)
-    ramp: float = quantity(2.0, "s", "in which the motion starts from rest", ge=0.0, le=1e4)
     at: Vector | None = quantity(None, "m", "its middle, world axes; none: where the frame is at home")
-    across: Vector | None = Field(default=None, description="a direction; none: across the frame's z axis, level")
-    up: Vector | None = Field(
-        default=None, description="a direction; none: across the frame's z axis, as upright as is"
-    )
     z_axis: Vector | None = Field(default=None, description="where the frame's z axis points; none: as at home")
     nominal: tuple[float, ...] | None = quantity(None, "deg", "joints, where the posture drifts to; none: home")
     beyond_reach: bool = Field(default=False, description="the path may leave what the arm reaches: it stretches")
@@ -93,17 +87,30 @@ class Phase(Config):
     )
     frame: str | Pose | None = Field(
         default=None,
-        description="axes of target, wrench and modes: world, a thing, or a pose; none: those of the phase before, the"
+        description="axes of target, wrench and modes: world, a thing, or a pose; in a timed list `contact` too: the"
+        " world's axes, counted from where the moved frame was when contact began; none: those of the phase before, the"
         " world's at first",
     )
     target: Vector | None = quantity(None, "m", "of the moved frame; none: that of the phase before")
+    begin: Vector | None = quantity(
+        None, "m", "where the way to the target begins, in a timed list; none: at the target of the phase before"
+    )
+    via: tuple[Vector, ...] = quantity(
+        (), "m", "places on the way to the target, in a timed list: each is reached at rest, in equal times"
+    )
+    arrive: float | None = quantity(
+        None, "s", "when the target is reached, in a timed list; none: when the phase ends at the latest", gt=0.0
+    )
     wrench: tuple[float, ...] | None = quantity(
         None, "N, N·m", "desired reaction of what is touched; three axes, or six; none: that of the phase before"
+    )
+    profile: WrenchProfile | None = Field(
+        default=None, description="a wrench that changes, in place of `wrench`, in a timed list"
     )
     modes: tuple[Mode, Mode, Mode, Mode, Mode, Mode] | None = Field(
         default=None, description="of each axis of `frame`, three of motion and three about them; none: as wrench says"
     )
-    motion: dict[str, Any] | None = Field(default=None, description="path along the motion axes")
+    motion: PhaseMotion | None = Field(default=None, description="curve that begins at the target, in a timed list")
     limit: MotionLimit | None = Field(default=None, description="of the motion along force axes")
     press: float | None = quantity(
         None,
@@ -114,6 +121,9 @@ class Phase(Config):
         le=60.0,
     )
     touch: str | None = Field(default=None, description="thing of the scene that this phase is to touch: it is sought")
+    like: str | None = Field(
+        default=None, description="phase whose weights a predictive controller takes here; none: those of its own name"
+    )
     settle: float = quantity(0.0, "s", "of the phase that its metrics leave out", ge=0.0)
     duration: float | None = quantity(None, "s", "short for until = { duration = … }", gt=0.0, le=3600.0)
     until: Condition | AnyOf | None = Field(
@@ -129,9 +139,16 @@ class Phase(Config):
             raise ValueError("a phase needs either duration or until")
         if self.wrench is not None and len(self.wrench) not in (3, 6):
             raise ValueError(f"a wrench has three or six axes, got {len(self.wrench)}")
+        if self.wrench is not None and self.profile is not None:
+            raise ValueError("a phase has either a wrench or a profile")
         if self.tracks and (self.target or self.wrench or self.modes or self.touch or self.motion or self.limit):
             raise ValueError("a phase with tracks is free: it has no target, wrench, modes, motion, limit or touch")
         return self
+
+    @property
+    def last_wrench(self) -> tuple[float, ...] | None:
+        """N, N·m at its end; None: that of the phase before."""
+        return self.wrench if self.profile is None else self.profile.wrench[-1]
 
     @property
     def conditions(self) -> tuple[Condition, ...]:

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from pliant.configuration import Config
+from pliant.errors import options
 from pliant.quantity import Range, quantity
 from pliant.robots.rotors import RotorInertia
 from pliant.tasks.estimation import Estimation
@@ -16,6 +17,7 @@ from pliant.tasks.parts import (
     Force,
     PathConfig,
     Phases,
+    Pose,
     Sensor,
     Simulation,
     TimingConfig,
@@ -27,7 +29,7 @@ from pliant.tasks.surface_config import SurfaceConfig
 
 FORMAT = 1
 _OF_A_PATH = {"surface": SurfaceConfig(), "path": PathConfig(), "force": Force(), "phases": Phases()}
-_OF_A_LIST = ("event", "scene", "moves", "start", "impedance", "landing")
+_OF_A_LIST = ("event", "scene", "moves", "start", "impedance", "landing", "timed")
 _OF_THE_SURFACE = ("shift", "tilt", "axis", "stiffness", "damping", "friction")
 
 
@@ -56,7 +58,14 @@ class TaskParts(Config):
     scene: dict[str, Thing] = Field(default={}, description="name → thing that stands around, with [[phase]]")
     event: tuple[Event, ...] = Field(default=(), description="online changes, with [[phase]]")
     moves: str | None = Field(default=None, description="frame that targets and wrenches are for; none: the tool's")
-    start: tuple[float, ...] | None = quantity(None, "deg", "joints at the start, with targets; none: home")
+    timed: bool = Field(
+        default=False,
+        description="with [[phase]] of targets: each is reached when its phase ends, from rest to rest, in place of as"
+        " fast as `planner` allows",
+    )
+    start: tuple[float, ...] | Pose | None = quantity(
+        None, "deg", "joints at the start, or the pose of the moved frame, looked for from home; none: home"
+    )
     impedance: ImpedanceConfig | None = Field(
         default=None, description="of the moved frame; none: the controller's own"
     )
@@ -84,6 +93,11 @@ class TaskParts(Config):
         default={}, description="parameter of the controller → lowest and highest, read by `--tune`; none: its gains"
     )
     simulation: Simulation = Simulation()
+    preset: Literal["tuned", "perfect", "paper"] | None = Field(
+        default=None,
+        description="weights of predictive controllers that `control` changes: tuned for an imperfect robot, for a"
+        " perfect one, or those of [FFMPC]; none: tuned where readings or commands are late, else perfect",
+    )
     control: dict[str, dict[str, Any]] = Field(
         default={}, description="controller → changes to its parameters, e.g. [control.haptic]"
     )
@@ -104,6 +118,9 @@ class TaskParts(Config):
         names = self.phase_names()
         if len(set(names)) < len(names):
             raise ValueError(f"phases need different names, got {list(names)}")
+        for phase in self.phase:
+            if phase.like is not None and phase.like not in names:
+                raise ValueError(f"like: there is no phase {phase.like!r}; {options(names, phase.like)}")
         return self
 
     def phase_names(self) -> tuple[str, ...]:

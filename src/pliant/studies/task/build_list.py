@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -24,6 +23,7 @@ from pliant.references.stages import Ending, Stage, Stages
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, MujocoPlant
+from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
@@ -32,6 +32,7 @@ from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
 from pliant.studies.task.listed import (
     changes_of,
     frame_of,
+    longest_of,
     per_axis,
     robot_of_list,
     scene_of,
@@ -40,6 +41,8 @@ from pliant.studies.task.listed import (
 )
 from pliant.studies.task.pressed import asked_of, beside_the_force, pressed_planes
 from pliant.studies.task.sensor import known_load, sensor_of
+from pliant.studies.task.start import start_of
+from pliant.studies.task.timed import level, refuse_untimed, timed_source, touching
 from pliant.studies.task.tracked import tracked_motion
 from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
 from pliant.surfaces import SurfaceGeometry
@@ -68,6 +71,7 @@ class Listed:
 
 def listed(case: TaskCase) -> Listed:
     """Robot, belief and parameters of a run. Raises PliantError for what cannot be run."""
+    refuse_untimed(case)
     robot, tracking = robot_of_list(case), tracks_of(case)
     if case.event and tracking:
         raise ConfigError("events change targets, wrenches and impedances of phases with a target; this one tracks")
@@ -77,16 +81,20 @@ def listed(case: TaskCase) -> Listed:
         believed = _believed(case, frames, oriented=True, presses=None)
         robot = robot if frames[0] == case.tool.frame else robot.with_contact(frames[0], case.tool.radius)
         parameters = case.controller_parameters(robot, believed)
-        return Listed(robot, believed, parameters, source.start, _whole(case), source)
-    start = robot.home if case.start is None else robot.vector(np.radians(case.start), "start")
+        return Listed(robot, believed, parameters, source.start, longest_of(case), source)
+    start = start_of(robot, frame_of(case), case.start)
     stages = stages_of(case, robot, robot.placement(start, frame_of(case))[1])
     _refuse(case, stages)
     pressing = any(np.any(stage.task.wrench) or "force" in asked_of(stage.task) for stage in stages)
     oriented = all(stage.task.rotation is not None for stage in stages)
     surface = pressed_planes(stages, changes_of(case))
     believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None, surface)
-    parameters, gentle = case.controller_parameters(robot, believed), landings(case, robot, stages, start)
-    return Listed(robot, believed, parameters, start, _whole(case), None, gentle)
+    if case.timed:
+        surface = None if level(stages) else surface  # nothing is believed of a horizontal one
+        believed = replace(believed, oriented=True, surface=surface, phases=touching(stages, case.phase))
+    parameters = case.controller_parameters(robot, believed)
+    gentle = {} if case.timed else landings(case, robot, stages, start)
+    return Listed(robot, believed, parameters, start, longest_of(case), None, gentle)
 
 
 def _not_held(case: TaskCase, made: Listed) -> tuple[str, ...]:
@@ -109,7 +117,7 @@ def _refuse(case: TaskCase, stages: Sequence[Stage]) -> None:
     forces = [(f"the wrench of phase {one.name!r}", float(np.linalg.norm(one.task.wrench[:3]))) for one in stages]
     changes = [change for change in changes_of(case) if change.wrench is not None]
     forces += [("the wrench of an event", float(np.linalg.norm(one.wrench[:3]))) for one in changes]  # type: ignore[index]
-    refuse_beyond(case.limits, forces, [("planner.speed", case.planner.speed)])
+    refuse_beyond(case.limits, forces, [] if case.timed else [("planner.speed", case.planner.speed)])
     refuse_outside(case.limits, "a target", np.array([one.task.position for one in stages]))
 
 
@@ -133,7 +141,7 @@ def build_list(case: TaskCase) -> Experiment:
             case.estimation,
             felt=not tracking,
             velocity_gain=case.velocity_share,
-            joint_memory=None if late else 0.0,
+            joint_memory=None if late or case.timed else 0.0,
             load=_load(case, frames[0]),
         ),
         torque_step=case.torque_step,
@@ -141,7 +149,7 @@ def build_list(case: TaskCase) -> Experiment:
         duration=made.duration,
         limits=run_limits(case.limits, frames[0]),
         warnings=(*_not_held(case, made), *too_slow(case, made.landings)),
-        channels=() if tracking else (Channel(f"planner/{frames[0]}/clamped", "m"),),
+        channels=() if tracking or case.timed else (Channel(f"planner/{frames[0]}/clamped", "m"),),
     )
     return wired(case.entry, made.parameters, offer)
 
@@ -170,25 +178,11 @@ def _believed(
     )
 
 
-def _whole(case: TaskCase) -> float:
-    """s that all phases take at most, and a period more where a timeout has yet to be noticed.
-
-    Raises:
-        ConfigError: a phase that may never end.
-    """
-    for name, phase in zip(case.phase_names(), case.phase, strict=True):
-        if math.isinf(phase.longest):
-            raise ConfigError(
-                f"phase {name!r} may never end: until = {{ any = [{{ … }}, {{ timeout = 8.0 }}] }}, and else says what"
-                " then"
-            )
-    waits = any(one.timeout is not None for one in case.phase[-1].conditions)
-    return sum(phase.longest for phase in case.phase) + (case.simulation.period if waits else 0.0)
-
-
 def _source(case: TaskCase, made: Listed, lookahead: Lookahead | None) -> ReferenceSource[Any]:
     if made.tracked is not None:
         return made.tracked if lookahead is None else Foreseen(made.tracked, lookahead)
+    if case.timed:
+        return timed_source(case, made.robot, made.start, lookahead)
     return planner_of(case, made, lookahead)
 
 
@@ -225,6 +219,7 @@ def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:
         sensors=[_sensor(case, frames[0], heavier)] if felt or case.limits.force is not None else [],
         pushes=pushes_of(case, made.duration),
         observe=list(frames),
+        speed_stop=SPEED_STOP if case.timed else None,
     )
     if perfect:
         return plant

@@ -6,13 +6,16 @@ from functools import partial
 
 import numpy as np
 
+from pliant.interfaces import Lookahead
 from pliant.references.postures.posture import PostureOptions
 from pliant.references.reach.check import ReachCheck, check_reach
 from pliant.references.reach.course import Course, course_of, course_through, instants_of
-from pliant.signals import Estimate
-from pliant.studies.task.build_list import listed, planner_of
+from pliant.signals import Estimate, Reference, TaskReference
+from pliant.spatial import Array
+from pliant.studies.task.build_list import Listed, listed, planner_of
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import force_of, laid_out
+from pliant.studies.task.timed import timed_source
 from pliant.studies.task.world import true_surface
 
 CHECKED_DRAWS = 10
@@ -66,8 +69,23 @@ def _course(case: TaskCase) -> Course:
     times = instants_of(made.duration)
     if made.tracked is not None:
         return course_through([made.tracked.at(time, time) for time in times.tolist()])
+    if case.timed:
+        return _timed_course(case, made, times)
     planner, nothing = planner_of(case, made, in_time=True), np.zeros(made.robot.n)
     estimate = Estimate(0.0, made.start, nothing, nothing, nothing)
     goal, _ = planner.inner.step(estimate, planner.inner.init(estimate))
     _, state = planner.step(estimate, planner.init(estimate))
     return course_through(planner.foreseen(goal, state, times))
+
+
+def _timed_course(case: TaskCase, made: Listed, times: Array) -> Course:
+    """The same for a timed list: what it foresees at its start. Args: times: (k,) s, evenly spaced."""
+    ahead = Lookahead(len(times) - 1, float(times[1] - times[0]))
+    source, nothing = timed_source(case, made.robot, made.start, ahead, in_time=True), np.zeros(made.robot.n)
+    estimate = Estimate(0.0, made.start, nothing, nothing, nothing)
+    seen = source.step(estimate, source.init(estimate))[0].preview
+    assert seen is not None
+    assert seen.rotation is not None
+    rows = zip(seen.time.tolist(), seen.position, seen.rotation, seen.wrench, strict=True)
+    frame = made.believed.frames[0]
+    return course_through([Reference(t, (TaskReference(frame, x, R, wrench=w),)) for t, x, R, w in rows])

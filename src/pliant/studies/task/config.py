@@ -10,6 +10,7 @@ from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.base_config import Dial
+from pliant.mpc.config import MpcConfig
 from pliant.mpc.presets import PRESETS
 from pliant.quantity import quantity
 from pliant.references.surface_task import SurfaceTaskSettings
@@ -37,7 +38,7 @@ class TaskCase(TaskParts, CaseConfig):
     @property
     def dials(self) -> tuple[Dial, ...]:
         """Largest force, and the speed of a path; up to the limits, or to twice of it where there is none."""
-        wrenches = [one.wrench[:3] for one in self.phase if one.wrench is not None]
+        wrenches = [one.last_wrench[:3] for one in self.phase if one.last_wrench is not None]
         force = max((math.hypot(*wrench) for wrench in wrenches), default=0.0) if self.phase else self.force.largest
         dials = [] if force == 0.0 else [Dial("force", "N", force, self.limits.force or 2.0 * force)]
         if not self.phase:
@@ -72,7 +73,12 @@ class TaskCase(TaskParts, CaseConfig):
                 find_controller(name)
         entry = self.entry
         late = self.timing.sensing_delay + self.timing.computation_delay > 0.0
-        base = merged(entry.default, PRESETS["tuned" if late else "perfect"].get(self.controller, {}))
+        preset = self.preset or ("tuned" if late else "perfect")
+        base = merged(entry.default, PRESETS[preset].get(self.controller, {}))
+        if isinstance(base, MpcConfig):
+            as_in = {name: one.like for name, one in zip(self.phase_names(), self.phase, strict=True)}
+            known = {name: base.phases[like].model_dump() for name, like in as_in.items() if like in base.phases}
+            base = merged(base, {"phases": known} if known else {})
         return parameters_for(entry, robot, believed, self.control.get(self.controller, {}), base)
 
 

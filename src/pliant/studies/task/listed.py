@@ -17,7 +17,7 @@ from pliant.simulation.scene import Thing, fixed_part
 from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.phase_axes import axis_modes, check_axes, frame_axes
+from pliant.studies.task.phase_axes import axes_of_phases, axis_modes, check_axes
 from pliant.studies.task.pressed import with_axes
 from pliant.surfaces import EdgeSurface, HoleSurface
 from pliant.tasks.draws import drawn
@@ -70,17 +70,16 @@ def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...
     """
     frame, target, told, held = frame_of(case), None, np.zeros(6), False
     robot.frame_id(frame)
-    axes, origin = np.eye(3), np.zeros(3)
+    axes = np.eye(3)
     found: list[Stage] = []
-    for name, phase in zip(case.phase_names(), case.phase, strict=True):
-        before = axes
-        axes, origin = (axes, origin) if phase.frame is None else frame_axes(case, name, phase.frame)
+    for name, phase, about in zip(case.phase_names(), case.phase, axes_of_phases(case), strict=True):
+        before, (axes, origin, _) = axes, about
         if phase.target is not None:
             target = origin + axes @ np.array(phase.target)
         if target is None:
             raise ConfigError(f"phase {name!r}: the first phase needs a target")
-        if phase.wrench is not None:
-            told, held = np.array([*phase.wrench, *([0.0] * (6 - len(phase.wrench)))]), len(phase.wrench) == 6
+        if (wrench := phase.last_wrench) is not None:
+            told, held = np.array([*wrench, *([0.0] * (6 - len(wrench)))]), len(wrench) == 6
         elif axes is not before:  # the same in the world
             told = np.concatenate([axes.T @ before @ told[:3], axes.T @ before @ told[3:]])
             told[np.abs(told) < 1e-9 * np.abs(told).max()] = 0.0
@@ -93,6 +92,22 @@ def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...
         endings = tuple(_ending(one, phase.otherwise) for one in phase.conditions)
         found.append(Stage(name, task, endings))
     return with_axes(found)
+
+
+def longest_of(case: TaskCase) -> float:
+    """s that all phases take at most, and a period more where a timeout has yet to be noticed.
+
+    Raises:
+        ConfigError: a phase that may never end.
+    """
+    for name, phase in zip(case.phase_names(), case.phase, strict=True):
+        if math.isinf(phase.longest):
+            raise ConfigError(
+                f"phase {name!r} may never end: until = {{ any = [{{ … }}, {{ timeout = 8.0 }}] }}, and else says what"
+                " then"
+            )
+    waits = any(one.timeout is not None for one in case.phase[-1].conditions)
+    return sum(phase.longest for phase in case.phase) + (case.simulation.period if waits else 0.0)
 
 
 def changes_of(case: TaskCase) -> tuple[StageChange, ...]:

@@ -10,11 +10,11 @@ from pliant.errors import ConfigError
 from pliant.references.postures.posture import PostureOptions
 from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.source import FrameMotion
-from pliant.references.trajectories.shapes import lemniscate, sine_line
 from pliant.references.trajectories.trajectory import Hold, Trajectory
 from pliant.robot import Robot
-from pliant.spatial import Array, frame_with_z_along
+from pliant.spatial import Array, frame_with_z_along, unit
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.curves import curve_of
 from pliant.studies.task.listed import robot_of_list, tracks_of
 from pliant.tasks.phase import Track
 
@@ -61,8 +61,7 @@ def _motion(track: Track, robot: Robot, frame: str) -> tuple[Trajectory, Array]:
     up = level - (level @ z) * z if track.up is None else np.array(track.up)
     across = np.cross(up, z) if track.across is None else np.array(track.across)
     centre = home if track.at is None else np.array(track.at)
-    if track.shape == "lemniscate":
-        return lemniscate(track.period, centre, *track.size, across, up), rotation
-    if track.shape == "line":
-        return sine_line(track.size[0], track.peak_speed, centre, across), rotation
-    return Hold(centre), rotation
+    if track.shape == "hold":
+        return Hold(centre), rotation
+    begin = centre - track.size[0] * unit(across, "across") if track.shape == "circle" else centre
+    return curve_of(track.shape, track, begin, across, up), rotation

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from pliant.configuration import validated
+from pliant.configuration import merged
+from pliant.errors import ConfigError, options
 from pliant.interfaces import Plant
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
@@ -24,8 +25,13 @@ from pliant.studies.task.geometry import robot_of
 from pliant.studies.task.sensor import sensor_of
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.draws import Drawn, drawn
-from pliant.tasks.parts import Vector
+from pliant.tasks.parts import Disturbance, Vector
 
+_IMPERFECTIONS = {
+    "none": Imperfections(),
+    "p3": Imperfections.p3(),
+    "p3-without-torque-loop": Imperfections.p3(pid=False),
+}
 _SHORTEST = 1e-3  # s, of a push: a normal distribution has no least value
 
 
@@ -55,14 +61,13 @@ def true_surface(case: TaskCase, believed: SurfaceGeometry, path: Toolpath) -> T
 
 
 def imperfections_of(case: TaskCase) -> Imperfections:
-    """Of sensors, drives and computation."""
+    """Of sensors, drives and computation. Raises ConfigError: values that there are not."""
     wanted = case.truth.imperfections
-    if isinstance(wanted, dict):
-        found = validated(Imperfections, wanted)
-    elif wanted == "none":
-        return Imperfections()
-    else:
-        found = Imperfections.p3(pid=wanted == "p3")
+    changes = dict(wanted) if isinstance(wanted, dict) else {"base": wanted}
+    base = changes.pop("base", "none")
+    if base not in _IMPERFECTIONS:
+        raise ConfigError(f"truth.imperfections.base: {options(_IMPERFECTIONS, str(base))}, got {base!r}")
+    found = merged(_IMPERFECTIONS[base], changes)
     damping = case.truth.joint_damping
     return found.model_copy(update={"joint_damping": damping}) if damping else found
 
@@ -100,18 +105,22 @@ def pushes_of(case: TaskCase, seconds: float) -> tuple[Push, ...]:
         time = one.start
         while time < seconds:
             time += 0.0 if one.gap is None else drawn(one.gap, rng)
-            force, duration = _push(one.push, rng), max(drawn(one.duration, rng), _SHORTEST)
+            force, duration = _push(one, rng), max(drawn(one.duration, rng), _SHORTEST)
             if time < seconds:
                 found.append(Push(one.frame, force, time, duration))
             time = math.inf if one.gap is None else time + duration
     return tuple(found)
 
 
-def _push(push: Drawn | Vector, rng: np.random.Generator) -> Vector:
-    if isinstance(push, tuple):
-        return push
-    way = unit(rng.standard_normal(3), "a direction")
-    x, y, z = (float(entry) for entry in drawn(push, rng) * way)
+def _push(one: Disturbance, rng: np.random.Generator) -> Vector:
+    if isinstance(one.push, tuple):
+        return one.push
+    if one.direction == "level":
+        angle = float(rng.uniform(0.0, 2.0 * math.pi))
+        way = np.array([math.cos(angle), math.sin(angle), 0.0])
+    else:
+        way = unit(rng.standard_normal(3), "a direction")
+    x, y, z = (float(entry) for entry in drawn(one.push, rng) * way)
     return x, y, z
 
 

@@ -1,0 +1,374 @@
+"""Timed lists: targets are reached when phases end, what is told from the contact counts from there, forces change by
+their profile; and the cases of the polishing study are such files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pliant.configuration import merged
+from pliant.errors import ConfigError
+from pliant.experiments.registry import get_study
+from pliant.interfaces import Lookahead
+from pliant.mpc.config import MpcConfig
+from pliant.robot import Robot
+from pliant.signals import Estimate, Reference
+from pliant.simulation import Imperfections, MujocoPlant
+from pliant.studies.task.build_list import listed
+from pliant.studies.task.check import checked_list
+from pliant.studies.task.config import TaskCase, case_of
+from pliant.studies.task.start import start_of
+from pliant.studies.task.study import study_of
+from pliant.studies.task.timed import timed_source
+from pliant.studies.task.world import imperfections_of, pushes_of
+from pliant.tasks import load_task
+from pliant.tasks.parts import Pose, ToolConfig
+from tests.tasks.test_phases import recorded
+
+FILE = "tables-2-3-4"
+TIMED = """
+robot = "iiwa14"
+controller = "force-feedback-mpc"
+timed = true
+locked = { A7 = 0.0 }
+start = { xyz = [0.6, 0.0, 0.15], rpy = [180, 0, 180] }
+"""
+DOWN = '[[phase]]\nname = "down"\ntarget = [0.6, 0.0, 0.1]\nduration = 0.5\n'
+PRESS = '[[phase]]\nname = "press"\nframe = "contact"\nwrench = [0, 0, 10]\nduration = 1.0\n'
+UNTIL = "until = { any = [{ contact = true }, { timeout = 0.4 }] }\n"
+SQUARE = {"times": (0.0, 0.2, 0.6), "wrench": ((0.0, 0.0, 5.0), (0.0, 0.0, 25.0), (0.0, 0.0, 10.0))}
+
+
+def case_from(folder: Path, text: str) -> TaskCase:
+    file = folder / "task.toml"
+    file.write_text(text, encoding="utf-8")
+    return case_of(load_task(file), "task")
+
+
+def said(case: TaskCase, seconds: float, off: float = 0.0, touching: bool = False) -> list[Reference]:
+    """References every 10 ms of a robot that stands still. Args: off: m, by which its first joint is beside its start;
+    touching: whether contact is felt."""
+    made = listed(case)
+    source, nothing = timed_source(case, made.robot, made.start, None), np.zeros(made.robot.n)
+    q = made.start + off * np.eye(made.robot.n)[0]
+    found: list[Reference] = []
+    state: Any = None
+    for time in np.arange(0.0, seconds, 0.01).tolist():
+        estimate = Estimate(time, q, nothing, nothing, nothing, contacts={"tool": touching})
+        state = source.init(estimate) if state is None else state
+        reference, state = source.step(estimate, state)
+        found.append(reference)
+    return found
+
+
+def places(references: list[Reference]) -> np.ndarray:
+    return np.array([one.tasks[0].position for one in references])
+
+
+# ------------------------------------------------------------------ the cases of the polishing study
+
+
+def test_every_case_of_the_polishing_study_is_a_variant_with_its_parameters() -> None:
+    ours, theirs = study_of(FILE), get_study("polishing")
+    assert set(ours.cases) == set(theirs.cases)
+    for name in ours.cases:
+        mine, yours = ours.case(name), theirs.case(name)
+        assert mine.controller == yours.controller, name
+        assert listed(mine).duration == yours.duration, name
+        assert listed(mine).parameters == theirs.build(yours).parameters, name
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("case", "duration"),
+    [
+        ("tables-2-3-4", 1.2),
+        ("tables-2-3-4-delayed", 1.2),
+        ("ideal", 3.1),
+        ("slow-tilted", 1.2),
+        ("robustness", 1.2),
+        ("naive", 1.2),
+    ],
+)
+def test_a_case_of_the_polishing_study_is_a_task_file(case: str, duration: float) -> None:
+    """The same motion, torques and force, tick by tick, with the same draws; with another seed they are not."""
+    ours, theirs = study_of(FILE), get_study("polishing")
+    one = recorded(ours, merged(ours.case(case), {"duration": duration, "seed": 3}), 1e-3)
+    other = recorded(theirs, merged(theirs.case(case), {"duration": duration, "seed": 3}), 1e-3)
+    for name, tolerance in (("truth/q", 1e-9), ("command/torque", 1e-6), ("truth/tool/wrench", 1e-5)):
+        np.testing.assert_allclose(one[name], other[name], atol=tolerance)
+    for name in ("reference/tool/position", "reference/tool/wrench"):
+        np.testing.assert_allclose(one[name], other[name], atol=1e-12)
+    assert one["truth/tool/wrench"][:, 2].max() > 4.0
+    if case != "ideal":
+        another = recorded(ours, merged(ours.case(case), {"duration": 0.1, "seed": 4}), 1e-3)
+        assert np.abs(another["truth/q"] - one["truth/q"][:100]).max() > 1e-6
+
+
+# ------------------------------------------------------------------ the words
+
+
+def test_a_target_is_reached_at_rest_when_its_phase_ends(tmp_path: Path) -> None:
+    case = case_from(tmp_path, TIMED + DOWN + "[[phase]]\ntarget = [0.6, 0.1, 0.1]\nduration = 1.0\n")
+    found = said(case, 1.5)
+    place, speed = places(found), np.array([np.linalg.norm(one.tasks[0].velocity) for one in found])
+    np.testing.assert_allclose(place[0], [0.6, 0.0, 0.15], atol=1e-12)
+    np.testing.assert_allclose(place[50], [0.6, 0.0, 0.1], atol=1e-12)
+    np.testing.assert_allclose(place[-1], [0.6, 0.1, 0.1], atol=1e-4)
+    assert speed[50] < 1e-9
+    assert speed[25] > 0.1
+    assert {one.phase for one in found} == {"down", "phase 2"}
+
+
+def test_begin_via_and_arrive_shape_the_way(tmp_path: Path) -> None:
+    text = DOWN + "begin = [0.6, 0.0, 0.2]\nvia = [[0.6, 0.05, 0.2]]\narrive = 0.4\n"
+    place = places(said(case_from(tmp_path, TIMED + text), 0.5))
+    for index, wanted in ((0, [0.6, 0.0, 0.2]), (20, [0.6, 0.05, 0.2]), (40, [0.6, 0.0, 0.1]), (49, [0.6, 0.0, 0.1])):
+        np.testing.assert_allclose(place[index], wanted, atol=1e-12)
+
+
+def test_what_is_told_from_the_contact_counts_from_where_the_tool_was(tmp_path: Path) -> None:
+    """Beside its believed place; in the world's axes it would not move."""
+    text = TIMED + DOWN + PRESS + "target = [0.0, 0.02, 0.0]\n"
+    straight, beside = (said(case_from(tmp_path, text), 1.6, off)[-1].tasks[0].position for off in (0.0, 0.01))
+    robot = listed(case_from(tmp_path, text)).robot
+    start = listed(case_from(tmp_path, text)).start
+    moved = robot.placement(start + 0.01 * np.eye(robot.n)[0], "tool")[0] - robot.placement(start, "tool")[0]
+    np.testing.assert_allclose(beside - straight, moved, atol=1e-9)
+    assert np.linalg.norm(moved) > 1e-3
+    world = text.replace('"contact"', '"world"').replace("[0.0, 0.02, 0.0]", "[0.6, 0.02, 0.1]")
+    fixed = [said(case_from(tmp_path, world), 1.6, off)[-1].tasks[0].position for off in (0.0, 0.01)]
+    np.testing.assert_array_equal(*fixed)
+
+
+def test_a_phase_ends_on_contact_and_a_run_that_feels_none_in_time_fails(tmp_path: Path) -> None:
+    case = case_from(tmp_path, TIMED + DOWN.replace("duration = 0.5\n", UNTIL) + PRESS)
+    assert [one.phase for one in said(case, 0.05, touching=True)] == ["press"] * 5
+    with pytest.raises(Exception, match=r"'down' felt no contact"):
+        said(case, 0.6)
+
+
+def test_a_profile_is_the_force_over_the_time_of_its_phase(tmp_path: Path) -> None:
+    base = case_from(tmp_path, TIMED + DOWN + PRESS)
+    wanted = {
+        "ramp": {0.0: 5.0, 0.1: 15.0, 0.2: 25.0, 0.4: 17.5, 0.9: 10.0},
+        "step": {0.0: 5.0, 0.1: 5.0, 0.2: 25.0, 0.4: 25.0, 0.9: 10.0},
+        "smooth": {0.0: 5.0, 0.1: 15.0, 0.2: 25.0, 0.4: 17.5, 0.9: 10.0},
+    }
+    for shape, values in wanted.items():
+        changes = {"phase": {"press": {"wrench": None, "profile": {**SQUARE, "shape": shape}}}}
+        found = said(merged(base, changes), 1.5)
+        for time, force in values.items():
+            told = found[50 + round(100 * time)].tasks[0].wrench
+            np.testing.assert_allclose(told, [0.0, 0.0, force, 0.0, 0.0, 0.0], atol=1e-6)
+
+
+def test_a_circle_keeps_its_radius_and_comes_to_rest(tmp_path: Path) -> None:
+    turn = 'motion = { shape = "circle", size = [0.05, 0.0], period = 1.0, ramp = 0.2 }\nduration = 1.0\n'
+    text = (
+        DOWN
+        + f'[[phase]]\nname = "turn"\n{turn}'
+        + '[[phase]]\nmotion = { shape = "stop", ramp = 0.2 }\nduration = 0.5\n'
+    )
+    found = said(case_from(tmp_path, TIMED + text), 2.0)
+    place = places(found)
+    np.testing.assert_allclose(np.linalg.norm(place[50:150] - [0.65, 0.0, 0.1], axis=1), 0.05, atol=1e-12)
+    np.testing.assert_allclose(place[50], [0.6, 0.0, 0.1], atol=1e-12)
+    assert place[60, 1] > 0.0  # it sets out along y of its frame
+    speed = np.array([one.tasks[0].velocity[:3] for one in found])
+    assert np.linalg.norm(speed[149]) == pytest.approx(2.0 * np.pi * 0.05, rel=1e-6)
+    np.testing.assert_allclose(speed[151], speed[149], atol=0.1)  # no jump at the end of the circle
+    assert np.abs(speed[171:]).max() < 1e-9
+    np.testing.assert_allclose(np.diff(place[50:], axis=0), 0.01 * 0.5 * (speed[50:-1] + speed[51:]), atol=2e-4)
+
+
+def test_a_curve_of_no_motion_holds_the_target(tmp_path: Path) -> None:
+    text = DOWN + '[[phase]]\nmotion = { shape = "hold" }\nduration = 0.5\n'
+    np.testing.assert_allclose(places(said(case_from(tmp_path, TIMED + text), 1.0))[50:], [[0.6, 0.0, 0.1]] * 50)
+
+
+def test_free_tracks_know_a_circle(tmp_path: Path) -> None:
+    text = 'robot = "panda"\ncontroller = "stack"\n[[phase]]\nduration = 0.3\n'
+    text += 'tracks.flange = { shape = "circle", size = [0.05, 0.0], ramp = 0.1 }\n'
+    made = listed(case_from(tmp_path, text))
+    assert made.tracked is not None
+    place = np.array([made.tracked.at(t, t).tasks[0].position for t in np.linspace(0.0, 0.3, 30)])
+    centre = made.robot.placement(made.robot.home, "flange")[0]
+    np.testing.assert_allclose(np.linalg.norm(place - centre, axis=1), 0.05, atol=1e-9)
+
+
+def test_the_preview_says_what_will_be_said(tmp_path: Path) -> None:
+    case = merged(case_from(tmp_path, TIMED + DOWN + PRESS), {"phase": {"press": {"wrench": None, "profile": SQUARE}}})
+    made, found = listed(case), said(case, 1.2)
+    source, nothing = timed_source(case, made.robot, made.start, Lookahead(100, 0.01)), np.zeros(made.robot.n)
+    estimate = Estimate(0.0, made.start, nothing, nothing, nothing)
+    preview = source.step(estimate, source.init(estimate))[0].preview
+    assert preview is not None
+    assert preview.phase[:50] == ("down",) * 50
+    np.testing.assert_allclose(preview.position[:50], places(found)[:50], atol=1e-9)
+    np.testing.assert_allclose(preview.wrench, [one.tasks[0].wrench for one in found[:101]], atol=1e-9)
+
+
+@pytest.mark.study
+@pytest.mark.parametrize("tilt", [0.0, 25.0])
+def test_a_force_across_a_tilted_plane_is_held_as_on_a_level_one(tmp_path: Path, tilt: float) -> None:
+    """Axes and believed surface follow from the wrench; pressed upright on the same plane it slides and errs more."""
+    s, c = np.sin(np.radians(tilt)), np.cos(np.radians(tilt))
+    turned = f"frame = {{ xyz = [0.6, 0.0, 0.1], rpy = [0, {tilt}, 0] }}\n"
+    height = 0.015 / c if tilt else 0.015
+    scene = (
+        f"scene.table = {{ shape = 'plane', pose = {{ xyz = [0.6, 0.0, {0.1 - height}], rpy = [0, {tilt}, 0] }} }}\n"
+    )
+    start = TIMED.replace("rpy = [180, 0, 180]", f"rpy = [180, {-tilt}, 180]").replace(
+        "xyz = [0.6, 0.0, 0.15]", f"xyz = [{0.6 + 0.05 * s}, 0.0, {0.1 + 0.05 * c}]"
+    )
+    timing = "timing = { sensing_delay = 0.0, computation_delay = 0.0 }\n"
+    press = '[[phase]]\nname = "press"\nwrench = [0, 0, 20]\nduration = 1.0\nsettle = 0.5\n'
+    first = DOWN.replace("target = [0.6, 0.0, 0.1]", turned + "target = [0.0, 0.0, 0.0]")
+    case_from(tmp_path, start + timing + scene + first + press)
+    study = study_of(str(tmp_path / "task.toml"))
+    log = recorded(study, merged(study.case("task"), {"duration": 1.5}), 1e-3)
+    found = {metric.name: metric.value for metric in study.metrics(study.case("task"), log)}
+    assert found["press/force_rms"] < 0.5
+    assert found["press/contact_breaks"] == 0.0
+    force = log["truth/tool/wrench"][-200:, :3].mean(axis=0)
+    np.testing.assert_allclose(force, 20.0 * np.array([s, 0.0, c]), atol=0.6)
+
+
+def test_a_start_is_a_pose_that_the_moved_frame_takes() -> None:
+    robot = listed(study_of(FILE).case(FILE)).robot
+    pose = Pose(xyz=(0.6, 0.1, 0.2), rpy=(180.0, 0.0, 180.0))
+    q = start_of(robot, "tool", pose)
+    place, rotation = robot.placement(q, "tool")
+    np.testing.assert_allclose(place, pose.xyz, atol=1e-3)
+    np.testing.assert_allclose(rotation, pose.rotation, atol=1e-2)
+    np.testing.assert_array_equal(start_of(robot, "tool", None), robot.home)
+    np.testing.assert_allclose(start_of(robot, "tool", tuple(np.degrees(q))), q)
+    with pytest.raises(ConfigError, match=r"cannot start with frame 'tool' at \[3.0, 0.0, 0.2\] m.*it misses by \d+"):
+        start_of(robot, "tool", Pose(xyz=(3.0, 0.0, 0.2)))
+
+
+def test_a_phase_has_the_weights_of_the_one_that_it_is_like() -> None:
+    study = study_of(FILE)
+    weights = listed(study.case("stop")).parameters
+    assert isinstance(weights, MpcConfig)
+    assert weights.phases["stop"] == weights.phases["circle"]
+    alone = listed(merged(study.case("stop"), {"phase": {"stop": {"like": None}}})).parameters
+    assert isinstance(alone, MpcConfig)
+    assert alone.phases["stop"] != alone.phases["circle"]
+
+
+def test_a_preset_is_what_control_changes() -> None:
+    case = study_of(FILE).case(FILE)
+    weights = {name: listed(merged(case, {"preset": name})).parameters for name in ("tuned", "perfect", "paper", None)}
+    assert weights[None] == weights["tuned"]  # readings are late
+    prompt = merged(case, {"preset": None, "timing": {"sensing_delay": 0.0}})
+    assert listed(prompt).parameters == weights["perfect"]
+    assert len({one.model_dump_json() for one in weights.values()}) == 3
+
+
+def test_a_shaft_carries_a_ball() -> None:
+    plain, thick = ToolConfig(radius=0.015).tool(), ToolConfig(radius=0.015, shaft=0.02).tool()
+    assert (plain.reach, thick.reach) == (0.015, 0.015)
+    assert thick.inertia.inertia[2, 2] == pytest.approx(0.5 * thick.mass * 0.02**2)
+    assert plain.inertia.inertia[2, 2] == pytest.approx(0.5 * plain.mass * 0.015**2)
+    robot = Robot.load("iiwa14", tool=thick).touching_with(thick)
+    assert robot.contact_radius["tool"] == 0.015
+    with pytest.raises(ValueError, match=r"tool\.shaft carries a ball.*got 'cylinder'"):
+        ToolConfig(shape="cylinder", shaft=0.02)
+
+
+def test_imperfections_change_a_named_set() -> None:
+    case = study_of(FILE).case(FILE)
+    changed = merged(case, {"truth": {"imperfections": {"ripple": {"amplitude": 5.0}}}})
+    p3 = Imperfections.p3(computation_delay=0.0)
+    assert imperfections_of(case) == p3
+    assert imperfections_of(changed) == merged(p3, {"ripple": {"amplitude": 5.0}})
+    with pytest.raises(ConfigError, match=r"imperfections\.base: valid: 'none', 'p3'.*got 'p4'"):
+        imperfections_of(merged(case, {"truth": {"imperfections": {"base": "p4"}}}))
+
+
+def test_level_pushes_are_horizontal_in_any_direction() -> None:
+    case = study_of(FILE).case("fast-pushed")
+    pushes = [push for seed in range(5) for push in pushes_of(merged(case, {"seed": seed}), 10.0)]
+    forces = np.array([push.force for push in pushes])
+    assert [push.start for push in pushes[:2]] == [4.0, pytest.approx(5.3)]
+    np.testing.assert_allclose(np.linalg.norm(forces, axis=1), 20.0)
+    np.testing.assert_array_equal(forces[:, 2], 0.0)
+    assert (forces[:, :2].min(axis=0) < -10.0).all()
+    assert (forces[:, :2].max(axis=0) > 10.0).all()
+    slanted = merged(case, {"disturbance": [{"push": 20.0, "start": 4.0}]})
+    assert pushes_of(slanted, 10.0)[0].force[2] != 0.0
+
+
+def test_a_timed_list_is_checked_along_its_whole_way() -> None:
+    case = study_of(FILE).case(FILE)
+    assert checked_list(case, 0).reachable
+    far = merged(case, {"phase": {"circle": {"motion": {"size": (0.6, 0.0)}}}})
+    assert not checked_list(far, 0).reachable
+
+
+def test_a_timed_run_stops_at_twice_the_speed_limits() -> None:
+    study = study_of(FILE)
+    plant = study.build(merged(study.case("ideal"), {})).plant
+    assert isinstance(plant, MujocoPlant)
+    assert plant.speed_stop == 2.0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (TIMED + DOWN + PRESS + "limit = { speed = 0.1 }\n", r"'press': limit is not for a timed list"),
+        (
+            TIMED + DOWN + PRESS + 'modes = ["motion", "motion", "force", "motion", "motion", "motion"]\n',
+            r"modes is not",
+        ),
+        (TIMED + DOWN.replace("duration = 0.5", "until = { force = 3.0, duration = 1.0 }"), r"by time or by contact"),
+        (TIMED + DOWN + "[[event]]\nchange = { wrench = [0, 0, 1] }\n", r"a timed list has no events"),
+        (TIMED.replace("timed = true", "") + DOWN + PRESS, r"frame is world, a thing of the scene or a pose"),
+        (TIMED.replace("timed = true", "") + DOWN + "arrive = 0.2\n", r"'down': arrive is for a timed list"),
+        (TIMED.replace("timed = true", "") + DOWN + 'motion = { shape = "line" }\n', r"motion is for a timed list"),
+        (TIMED + DOWN + 'motion = { shape = "stop" }\n', r"no motion before it that could stop"),
+        (
+            TIMED + DOWN + 'motion = { shape = "circle", across = [1, 0, 0], up = [1, 1, 0] }\n',
+            r"must be perpendicular",
+        ),
+        (
+            TIMED
+            + DOWN.replace(
+                "duration = 0.5", 'until = { any = [{ contact = true }, { timeout = 1.0 }] }\nelse = "next"'
+            ),
+            r"contact that is not felt in time is a failure",
+        ),
+    ],
+)
+def test_what_a_list_cannot_say_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    case = case_from(tmp_path, text)
+    with pytest.raises(ConfigError, match=message) as caught:
+        study_of(str(tmp_path / "task.toml")).build(case)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            DOWN + "wrench = [0, 0, 1]\nprofile = { times = [0], wrench = [[0, 0, 1]] }\n",
+            r"either a wrench or a profile",
+        ),
+        (DOWN + "profile = { times = [0, 1], wrench = [[0, 0, 1]] }\n", r"one wrench a time, got 2 and 1"),
+        (DOWN + "profile = { times = [1, 0], wrench = [[0, 0, 1], [0, 0, 2]] }\n", r"times of a profile increase"),
+        (DOWN + "profile = { times = [0], wrench = [[0, 1]] }\n", r"three or six axes, got 2"),
+        (DOWN + 'motion = { shape = "stop", ramp = 0.0 }\n', r"cannot stop within 0 s"),
+        (DOWN + 'motion = { shape = "zigzag" }\n', r"'lemniscate', 'line', 'circle'"),
+        (DOWN + 'like = "dwn"\n', r"like: there is no phase 'dwn'; valid: 'down' .*did you mean 'down'"),
+    ],
+)
+def test_a_file_that_contradicts_itself_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        case_from(tmp_path, TIMED + text)
+    with pytest.raises(ConfigError, match=r"timed belongs to a task of \[\[phase\]\]"):
+        case_from(tmp_path, 'timed = true\n[path]\npattern = "line"\n')
