@@ -16,8 +16,7 @@ from pliant.mpc.modelled_force import ModelledForceMpc
 from pliant.mpc.registry import CONTROLLERS
 from pliant.signals import Estimate
 from pliant.studies.polishing import STUDY
-from pliant.studies.polishing.build import build
-from pliant.studies.polishing.config import FRAME
+from pliant.studies.polishing.paper_task import FRAME
 
 NAIVE = "visco-elastic-mpc"
 
@@ -37,7 +36,8 @@ def test_the_measured_force_changes_nothing() -> None:
     for name, same in ((NAIVE, True), ("force-feedback-mpc", False)):
         torques: list[np.ndarray] = []
         for bias in (0.0, 30.0):
-            made = build(merged(STUDY.case("ideal"), {"controller": name, "task": {"reach": 0.02, "touch": 0.04}}))
+            changes = {"controller": name, "task": {"reach": 0.02, "touch": 0.04}}
+            made = STUDY.build(merged(STUDY.case("ideal"), changes))
             measurement, world = made.plant.init()
             filtered = made.estimator.init(measurement)
             estimate, filtered = made.estimator.step(measurement, filtered)

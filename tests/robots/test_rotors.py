@@ -99,6 +99,7 @@ def grows(inertia: float, stiffness: float, late: float) -> bool:
 def test_the_polishing_study_has_the_arm_of_its_paper_and_others_have_their_rotors() -> None:
     study = get_study("polishing")
     case = study.case("ideal")
-    assert not case.robot_model().armature.any()
-    assert merged(case, {"rotor_inertia": 0.1}).robot_model().armature.tolist() == [0.1] * 6
-    assert (merged(case, {"robot": "panda"}).robot_model().armature > 0.0).all()
+    assert not study.build(case).robot.armature.any()
+    assert study.build(merged(case, {"rotor_inertia": 0.1})).robot.armature.tolist() == [0.1] * 6
+    placed = {"robot": "panda", "table": {"x": 0.5}}
+    assert (study.build(merged(case, placed)).robot.armature > 0.0).all()

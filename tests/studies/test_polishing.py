@@ -12,6 +12,7 @@ from pliant.configuration import merged
 from pliant.errors import ConfigError
 from pliant.experiments.runner import run_case
 from pliant.signals import Tick
+from pliant.simulation import MujocoPlant
 from pliant.simulation.imperfections.config import Imperfections
 from pliant.studies.polishing import STUDY
 from pliant.studies.polishing.config import PolishingConfig
@@ -134,7 +135,9 @@ def test_every_channel_has_a_unit() -> None:
 
 
 def test_what_nobody_knows_of_the_tool_is_added_to_it() -> None:
-    known, heavier = _config().robot_model(), _config().robot_model(0.5)
+    made = STUDY.build(_config(unknown_mass=0.5))
+    assert isinstance(made.plant, MujocoPlant)
+    known, heavier = made.robot, made.plant.robot
     masses = [sum(inertia.mass for inertia in robot.model.inertias) for robot in (known, heavier)]
     assert masses[1] - masses[0] == pytest.approx(0.5)
 

@@ -13,7 +13,6 @@ from pliant.errors import ConfigError
 from pliant.experiments.base import Result
 from pliant.experiments.runner import run_case
 from pliant.studies.polishing import STUDY
-from pliant.studies.polishing.build import build
 from pliant.studies.polishing.cases_open import OPEN_CASES
 from pliant.studies.polishing.measure_parts import of_circles, of_steps
 
@@ -67,7 +66,7 @@ def test_overshoot_is_that_of_the_worst_step_each_way() -> None:
 def test_the_stop_brings_the_tool_to_rest_on_the_table() -> None:
     """Position, velocity and acceleration of the reference go on without a jump; then it stands, pressed on."""
     config = merged(STUDY.case("stop"), {"duration": 8.0})
-    source = build(config).source
+    source = STUDY.build(config).source
     while not hasattr(source, "phases"):
         source = source.inner
     circle, stop = source.phases[-2:]
@@ -79,9 +78,9 @@ def test_the_stop_brings_the_tool_to_rest_on_the_table() -> None:
     np.testing.assert_allclose(np.concatenate([end.rate, end.acceleration]), 0.0, atol=1e-9)
     assert np.linalg.norm(end.value - after.value) < 0.5 * 0.21 * config.task.ease + 0.01  # m, of a path at 0.21 m/s
     with pytest.raises(ConfigError, match="ends a circle"):
-        build(merged(STUDY.case("square"), {"task": {"stop": 6.0}}))
+        STUDY.build(merged(STUDY.case("square"), {"task": {"stop": 6.0}}))
     with pytest.raises(ConfigError, match="must increase"):
-        build(merged(STUDY.case("slow"), {"task": {"stop": 2.0}}))
+        STUDY.build(merged(STUDY.case("slow"), {"task": {"stop": 2.0}}))
 
 
 @pytest.mark.study

@@ -184,6 +184,7 @@ class Thing(Config):
         default=Pose(), description="of a plane's point, of a box's or ball's centre, of the middle of a hole's mouth"
     )
     size: Vector = quantity((0.1, 0.1, 0.1), "m", "edges of a box")
+    visible: tuple[float, float] = quantity((1.2, 1.2), "m", "edges of the part of a plane that pictures show")
     radius: float = quantity(0.1, "m", "of a ball or a hole", gt=0.0, le=100.0)
     depth: float = quantity(HoleSurface.depth, "m", "of a hole, from its face to its bottom", gt=0.0, le=100.0)
     chamfer: float = quantity(HoleSurface.chamfer, "m", "of a hole's mouth, bevelled by 45°", ge=0.0, le=100.0)

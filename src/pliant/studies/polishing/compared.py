@@ -10,7 +10,7 @@ import numpy as np
 from pliant.experiments.case import Case
 from pliant.experiments.result import Result
 from pliant.studies.figures import CaseFigure, short
-from pliant.studies.polishing.config import FRAME
+from pliant.studies.polishing.paper_task import FRAME
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, time_series
 

@@ -1,11 +1,13 @@
-"""Typed configuration of a polishing run.
+"""Typed configuration of a polishing run: what of its task file the study changes, in few numbers.
 
 Source of the task: [FFMPC] Kleff, Jordana, Mansard, Righetti, "Force feedback in model predictive control: a soft
-contact approach", 2024, sections VI and VII. What the paper leaves open (height of the table, tool, ramps) is here.
+contact approach", 2024, sections VI and VII. What the paper leaves open (height of the table, tool, ramps) is in the
+task file, `tables-2-3-4` of the catalogue.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
@@ -13,28 +15,16 @@ from pydantic import Field
 
 from pliant.configuration import merged
 from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
-from pliant.entries import Believed, ControllerConfig, ControllerEntry
+from pliant.entries import ControllerConfig
 from pliant.experiments.base import CaseConfig
-from pliant.mpc.config import MpcConfig
-from pliant.mpc.presets import PRESETS
 from pliant.quantity import quantity
-from pliant.robot import Robot, Tool
 from pliant.robots.rotors import RotorInertia
 from pliant.simulation import Imperfections
+from pliant.studies.polishing.paper_task import TASK, end_of
+from pliant.studies.polishing.timetable import disturbances, phase_changes, start_pose
 from pliant.studies.polishing.work_config import RepeatedPushes, Table, Work
-from pliant.wiring.registry import find_controller
-from pliant.wiring.wire import parameters_for
-
-FRAME = "tool"
-BALL_RADIUS = 0.015  # m; the contact frame is its centre
-PHASES: Mapping[str, bool] = {"reach": False, "track": False, "ramp": True, "contact": True, "circle": True}
-"""name of each phase → whether the tool touches in it"""
-
-
-LOCKED: Mapping[str, Mapping[str, float]] = {"iiwa14": {"A7": 0.0}}
-"""robot → joint → rad; what the paper holds still"""
-ROTORS: Mapping[str, RotorInertia] = {"iiwa14": 0.0}
-"""robot → kg m²; the paper's model has none, and the printed numbers are those of that model"""
+from pliant.studies.task.build_list import listed
+from pliant.studies.task.config import TaskCase
 
 
 class PolishingConfig(CaseConfig):
@@ -56,9 +46,9 @@ class PolishingConfig(CaseConfig):
         "the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: 0 for"
         " the iiwa14, whose model in the paper has none, of another robot that of the catalogue or of the file",
     )
-    duration: float = quantity(10.0, "s", "length of the run", gt=0.0)
-    period: float = quantity(1e-3, "s", "control period", gt=0.0)
-    physics_step: float = quantity(5e-4, "s", "of the simulation", gt=0.0)
+    duration: float = quantity(end_of("circle"), "s", "length of the run", gt=0.0, le=3600.0)
+    period: float = quantity(TASK.simulation.period, "s", "control period", gt=0.0)
+    physics_step: float = quantity(TASK.simulation.physics_step, "s", "of the simulation", gt=0.0)
     table: Table = Table()
     task: Work = Work()
     imperfections: Imperfections = Field(default=Imperfections(), description="of sensors, drives and computation")
@@ -95,43 +85,47 @@ class PolishingConfig(CaseConfig):
             "the work": (task.circle, self.duration),
         }
 
-    @property
-    def entry(self) -> ControllerEntry[Any]:
-        """The chosen controller."""
-        return find_controller(self.controller)
-
-    @property
-    def perfect(self) -> bool:
-        """Whether sensors, drives and computation are perfect."""
-        return self.imperfections == Imperfections()
-
-    @property
-    def believed(self) -> Believed:
-        """What the controller may know."""
-        return Believed(
-            frames=(FRAME,),
-            period=self.period,
-            presses=FRAME,
-            sensing_delay=self.imperfections.sensing.delay,
-            computation_delay=max(self.imperfections.computation_delay + self.delay_error, 0.0),
-            phases=PHASES if self.task.stop is None else {**PHASES, "stop": True},
-        )
-
-    def robot_model(self, unknown_mass: float = 0.0) -> Robot:
-        """The arm with its tool; the real tool may be heavier than the known one."""
-        tool = Tool(frame=FRAME)
-        heavier = Tool(frame=FRAME, mass=tool.mass + unknown_mass)
-        locked = LOCKED.get(self.robot) if self.locked is None else self.locked
-        rotors = ROTORS.get(self.robot) if self.rotor_inertia is None else self.rotor_inertia
-        arm = Robot.load(self.robot, locked=locked, tool=heavier, rotor_inertia=rotors)
-        return arm.with_contact(FRAME, BALL_RADIUS)
-
     def parameters(self) -> ControllerConfig:
         """The controller's parameters: its defaults, those of this study, what is known of the robot's delays, then
         `control`."""
-        entry = self.entry
-        base = merged(entry.default, PRESETS[self.preset].get(self.controller, {}))
-        if self.task.stop is not None and isinstance(base, MpcConfig) and "circle" in base.phases:
-            # the tool rests by the costs that drew the circle
-            base = merged(base, {"phases": {"stop": base.phases["circle"].model_dump()}})
-        return parameters_for(entry, self.robot_model(), self.believed, self.control, base)
+        return listed(self.as_task()).parameters
+
+    def as_task(self) -> TaskCase:
+        """The task of this run: that of the file, with what is changed here.
+
+        Raises:
+            ConfigError: times that do not increase, a stop of something else than a circle, or a value that a task
+                does not take.
+        """
+        imperfections, table = self.imperfections, self.table
+        late = max(imperfections.computation_delay + self.delay_error, 0.0)
+        shared = {name: getattr(self, name) for name in (*CaseConfig.model_fields, "preset", "torque_step")}
+        plane = {"pose": {"xyz": (table.x, 0.0, table.height), "rpy": (math.degrees(table.tilt), 0.0, 0.0)}}
+        plane |= {"stiffness": table.stiffness, "damping": table.damping, "friction": table.friction}
+        changes: dict[str, Any] = {
+            **shared,
+            **self._arm(),
+            "estimation": self.estimation.model_dump(),
+            "start": start_pose(table, self.task),
+            "control": {self.controller: self.control} if self.control else {},
+            "simulation": {"period": self.period, "physics_step": self.physics_step},
+            "timing": {"sensing_delay": imperfections.sensing.delay, "computation_delay": late},
+            "truth": {
+                "tool_mass": self.unknown_mass,
+                "link_masses": self.model_mass_error,
+                "imperfections": {"base": "none", **imperfections.model_dump()},
+            },
+            "scene": {"table": plane},
+            "phase": phase_changes(table, self.task, self.duration),
+            "disturbance": disturbances(self.pushes),
+        }
+        return merged(TASK, changes)
+
+    def _arm(self) -> Mapping[str, Any]:
+        """What is held still and how heavy the motors are: as in the paper of its own arm, of others what is known."""
+        own = self.robot == TASK.robot
+        locked = None if self.locked is None else {joint: math.degrees(at) for joint, at in self.locked.items()}
+        return {
+            "locked": TASK.locked if own and self.locked is None else locked,
+            "rotor_inertia": TASK.rotor_inertia if own and self.rotor_inertia is None else self.rotor_inertia,
+        }

@@ -12,7 +12,8 @@ from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
 from pliant.studies.figures import saved_figures
-from pliant.studies.polishing.config import FRAME, PolishingConfig
+from pliant.studies.polishing.config import PolishingConfig
+from pliant.studies.polishing.paper_task import FRAME
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, time_series
 from pliant.telemetry.plots.pictures import picture_row

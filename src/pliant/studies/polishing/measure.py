@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.spatial import Array
-from pliant.studies.polishing.config import FRAME, PolishingConfig
+from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.measure_parts import of_circles, of_steps
+from pliant.studies.polishing.paper_task import FRAME
 from pliant.telemetry import contact_metrics
 from pliant.telemetry import metrics as of
 from pliant.telemetry.log import Log

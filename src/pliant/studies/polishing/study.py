@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from pliant.experiments.base import Experiment, Study
 from pliant.experiments.parameter_search import ParameterSearch
 from pliant.studies.polishing import draw
-from pliant.studies.polishing.build import build
 from pliant.studies.polishing.cases import CASES
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.measure import WORST, measure
 from pliant.studies.polishing.search import search_of
+from pliant.studies.task.build_list import build_list
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -25,7 +26,8 @@ class Polishing(Study[PolishingConfig]):
     worst = WORST
 
     def build(self, config: PolishingConfig) -> Experiment:
-        return build(config)
+        """Wires the task of a run, whose last phase goes on. Raises PliantError: a robot or value that does not fit."""
+        return replace(build_list(config.as_task()), duration=None)
 
     def metrics(self, config: PolishingConfig, log: Log) -> tuple[Metric, ...]:
         return measure(config, log)

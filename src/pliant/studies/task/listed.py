@@ -177,7 +177,7 @@ def _thing(name: str, one: Described) -> Thing:
         return fixed_part(name, EdgeSurface(*place, math.radians(one.angle), one.rounding), touch)
     if one.shape == "plane":
         x, y, z = (float(entry) for entry in one.pose.rotation[:, 2])
-        return Plane(name, one.pose.xyz, (x, y, z), touch, (0.6, 0.6))
+        return Plane(name, one.pose.xyz, (x, y, z), touch, (0.5 * one.visible[0], 0.5 * one.visible[1]))
     if one.shape == "ball":
         return Ball(name, one.radius, one.pose.xyz, one.mass, touch)
     roll, pitch, yaw = (math.radians(angle) for angle in one.pose.rpy)
