@@ -107,11 +107,11 @@ class StackConfig(ControllerConfig):
         shown=(0.0, 20.0),
         ge=0.0,
     )
-    force_damping: float = quantity(
+    motion_damping: float = quantity(
         0.0,
-        "N·s/m",
-        "of a frame's motion along its desired force; damps the contact and not the path",
-        shown=(0.0, 1000.0),
+        "1/s",
+        "of what a frame's velocity differs from its reference's by, with the inertia that the frame has",
+        shown=(0.0, 200.0),
         ge=0.0,
     )
     gravity_compensation: bool = Field(

@@ -8,6 +8,7 @@ from typing import Any
 from pliant.controllers.advice import advise, sentences, smallest_inertia
 from pliant.controllers.attractor import Law
 from pliant.controllers.config import OperationalSpaceConfig, StackConfig
+from pliant.controllers.damping import Damping
 from pliant.controllers.operational_space import OperationalSpace
 from pliant.controllers.presets import STIFF_STACK
 from pliant.controllers.stack import Stack, needs_of_law
@@ -25,8 +26,7 @@ def build_stack(robot: Robot, config: StackConfig, period: float) -> Stack:
         period,
         law=config.law,
         phases=config.phases,
-        joint_damping=config.joint_damping,
-        force_damping=config.force_damping,
+        damping=Damping(config.joint_damping, config.motion_damping),
         gravity_compensation=config.gravity_compensation,
     )
 

@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from pliant import _impedance
 from pliant.controllers.attractor import Law
+from pliant.controllers.damping import Damping
 from pliant.controllers.energy_ledger import Diagnostics, LedgerChannel, channel_table, require_length
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.phase_settings import PhaseSettings
@@ -56,13 +57,13 @@ def needs_of_law(law: Law) -> Needs:
 class Stack(Controller[StackState]):
     """τ = Σ J_iᵀ h_i, each h_i a fractal impedance at its own frame, then clamped to the torque limits ([Stack] eq. 5).
 
-    It needs no inverse, no projection and, without gravity compensation, no inertia. Orientation errors are
-    e = log(R_d Rᵀ); the moment is m = J_l⁻¹(e) h, so that m·ω = −h·ė with unequal gains, too.
+    It needs no inverse, no projection and, without gravity compensation and `motion_damping`, no inertia. Orientation
+    errors are e = log(R_d Rᵀ); the moment is m = J_l⁻¹(e) h, so that m·ω = −h·ė with unequal gains, too.
     Where a moment would exceed its F_max, the three shrink together. Each axis of the capped law accounts for the
     energy that sampling, clamps and changes of its tuning release, see `passivity_account`.
 
-    Forces come from position errors alone: `TaskReference.velocity` and `.acceleration` are not used, `.wrench` for the
-    direction of `force_damping` alone. Axes are the world's, or those of `TaskReference.modes`: a "free" one gives no
+    Forces come from position errors alone: `TaskReference.acceleration` is not used, `.velocity` for `motion_damping`
+    alone, `.wrench` not at all. Axes are the world's, or those of `TaskReference.modes`: a "free" one gives no
     force; where they turn, the axes start anew (`cpp/impedance/task.hpp`). While the reference of a task has no
     rotation, its orientation is free.
 
@@ -77,8 +78,7 @@ class Stack(Controller[StackState]):
         *,
         law: Law = Law.CAPPED,
         phases: PhaseSettings | None = None,
-        joint_damping: float = 0.0,
-        force_damping: float = 0.0,
+        damping: Damping | None = None,
         gravity_compensation: bool = False,
     ) -> None:
         """
@@ -88,23 +88,23 @@ class Stack(Controller[StackState]):
             period: s between two steps.
             law: force on the way back; `capped` unless you compare.
             phases: thresholds of the phase logic.
-            joint_damping: N·m·s/rad, damping on the estimated joint velocity; the attractor needs none.
-            force_damping: N·s/m, damping on the frame's velocity along the desired force of its reference.
+            damping: beside that of the attractors, which need none in a prompt loop.
             gravity_compensation: adds the model's gravity torque; leave it off where the robot compensates itself.
 
         Raises:
             ConfigError: no task, two tasks of one label, or a period that is not above zero.
             RobotError: a frame that the robot does not have.
         """
-        check_stack(tasks, period, joint_damping, force_damping)
+        check_stack(tasks, period)
         self.robot = robot
         self.tasks = tuple(tasks)
         self.period = period
         self.law = Law(law)
         self.phases = phases or PhaseSettings()
-        self.joint_damping, self.force_damping = joint_damping, force_damping
+        self.damping = damping or Damping()
         self.gravity_compensation = gravity_compensation
         self._frames = [robot.frame_id(task.frame) for task in tasks]
+        self._scratch = robot.model.createData()  # nothing in it outlives a step
         self._core = _impedance.Stack(
             law=self.law.value,
             period=period,
@@ -167,7 +167,7 @@ class Stack(Controller[StackState]):
             pin.computeJointJacobians(model, work.data, estimate.q)
             for frame in self._frames:
                 pin.updateFramePlacement(model, work.data, frame)
-            bias = self._bias(estimate, reference, work.data)
+            bias = self._bias(estimate, targets, work.data)
             code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune, axes)
         except (ValueError, TypeError, RuntimeError) as error:
             raise ShapeError(self._misshapen(estimate, desired, error)) from error
@@ -177,27 +177,16 @@ class Stack(Controller[StackState]):
         command = Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out))
         return command, StackState(memory, tunings, free, work)
 
-    def _bias(self, estimate: Estimate, reference: Reference, data: pin.Data) -> Array | None:
-        """(n,) N·m in addition to the tasks; None for none."""
-        gravity = (
-            pin.computeGeneralizedGravity(self.robot.model, data, estimate.q) if self.gravity_compensation else None
-        )
-        if self.joint_damping == 0.0 and self.force_damping == 0.0:
-            return gravity
-        damping = -self.joint_damping * self.robot.vector(estimate.v, "v")
-        for place, frame in enumerate(self._frames if self.force_damping > 0.0 else ()):
-            damping = damping - self.force_damping * self._along_force(reference, place, frame, data, estimate.v)
-        return damping if gravity is None else gravity + damping
-
-    def _along_force(self, reference: Reference, place: int, frame: int, data: pin.Data, v: Array) -> Array:
-        """(n,) Jᵀ n nᵀ J v, n the direction of the desired force; zero without one."""
-        force = target_of(reference, place, self.tasks[place].frame).wrench[:3]
-        size = float(np.linalg.norm(force))
-        if size == 0.0:
-            return np.zeros(self.robot.n)
-        J = pin.getFrameJacobian(self.robot.model, data, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
-        along = np.array(J)[:3].T @ (force / size)
-        return along * float(along @ v)
+    def _bias(self, estimate: Estimate, targets: Sequence[TaskReference], data: pin.Data) -> Array | None:
+        """(n,) N·m beside the tasks; None for nothing."""
+        model, damping = self.robot.model, None
+        if self.damping.any:
+            v, frames = self.robot.vector(estimate.v, "v"), list(zip(self._frames, targets, strict=True))
+            damping = self.damping.torque(model, self._scratch, estimate.q, v, frames)
+        if not self.gravity_compensation:
+            return damping
+        gravity = pin.computeGeneralizedGravity(model, data, estimate.q)
+        return gravity if damping is None else gravity + damping
 
     def kept_back(self, state: StackState, torque: Array) -> StackState:
         """Adds to the accounts that part of the last torque, (n,) N·m, was not sent."""

@@ -24,12 +24,9 @@ def target_of(reference: Reference, place: int, frame: str) -> TaskReference:
     raise ConfigError(f"the reference has no task for frame {frame!r}; {options([t.frame for t in tasks], frame)}")
 
 
-def check_stack(tasks: Sequence[FrameTask], period: float, joint_damping: float, force_damping: float) -> None:
+def check_stack(tasks: Sequence[FrameTask], period: float) -> None:
     if not (math.isfinite(period) and period > 0.0):
         raise ConfigError(f"the control period must be finite and above zero, got {period} s")
-    for name, value in (("joint_damping", joint_damping), ("force_damping", force_damping)):
-        if not (math.isfinite(value) and value >= 0.0):
-            raise ConfigError(f"{name} must be finite and not negative, got {value}")
     labels = [task.label for task in tasks]
     if not tasks or len(set(labels)) != len(labels):
         raise ConfigError(f"a stack needs one or more tasks with different labels, got {labels}")

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 from pydantic import Field
 
 from pliant.controllers.attractor import Law
@@ -19,12 +18,11 @@ from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.interfaces import Needs, ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
-from pliant.rigid_body import mass_along
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
 _PROMPT = 1e-3  # s; a loop that is not later needs no damping of its contacts
-_DAMPED = 0.4  # of Λ over the lateness: what a loop that late damps a mass Λ with; π/2 is the end of stability
+_DAMPED = 0.4  # times 1 / lateness: how fast a loop that late damps a motion; π/2 is the end of stability
 _SLOWER = 0.1  # k_I times the loop's lateness, at most: force is regulated ten times more slowly than the loop answers
 
 
@@ -60,29 +58,20 @@ def _needs(config: HapticConfig) -> Needs:
 
 def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticConfig:
     """The stack that suits; where phases say when to touch, a frame that should and does not goes and looks. In a late
-    loop force is regulated more slowly, k_I is a tenth of 1 / (period and delays) at most, and the motion along the
-    force is damped with 0.4 Λ / (period and delays), Λ the mass that the frame has there: the tool on its contact is a
-    spring that nothing else damps, and a late stiffness drives it."""
+    loop force is regulated more slowly, k_I is a tenth of 1 / (period and delays) at most, and what differs from the
+    reference's motion is damped with 0.4 / (period and delays), in every direction: the tool on its contact and the arm
+    on its soft rotation are springs that nothing else damps, and a late stiffness drives them."""
     exploration, impedance = config.exploration, suggest_stack(robot, config.impedance, believed)
     if exploration is not None:
         late = believed.period + believed.sensing_delay + believed.computation_delay
         if late > _PROMPT:
-            damping = _DAMPED * _mass_along(robot, believed) / late
-            impedance = impedance.model_copy(update={"force_damping": damping})
+            impedance = impedance.model_copy(update={"motion_damping": _DAMPED / late})
         changes = {
             "gain": min(exploration.gain, _SLOWER / late),
             "seek": exploration.seek or any(believed.phases.values()),
         }
         exploration = exploration.model_copy(update=changes)
     return config.model_copy(update={"impedance": impedance, "exploration": exploration})
-
-
-def _mass_along(robot: Robot, believed: Believed) -> float:
-    """kg that the pressing frame has at home along the believed surface's normal, upwards where there is none."""
-    surface = believed.surface
-    normal = np.array([0.0, 0.0, 1.0]) if surface is None else np.array(surface.normal(surface.top()))
-    frame = robot.frame_id(believed.presses or believed.frames[0])
-    return mass_along(robot.model, robot.home, frame, normal)
 
 
 def _filter(source: ReferenceSource[Any], robot: Robot, config: HapticConfig) -> ReferenceSource[Any]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from pliant.axis_modes import AxisModes
 from pliant.references.exploration.axis import AxisPhase, ExploredAxis
 from pliant.references.exploration.config import ExplorationConfig
@@ -14,6 +12,7 @@ from pliant.references.exploration.contact_normal import Vector, turned_normal, 
 from pliant.references.exploration.paper import printed_step
 from pliant.references.exploration.rules import AxisLimits, AxisRules
 from pliant.signals import ImpedanceTuning
+from pliant.spatial import Array
 
 
 class FrameRules:
@@ -30,7 +29,7 @@ class FrameRules:
 class ExploredFrame:
     """State of one frame. `step` changes it in place."""
 
-    __slots__ = ("along", "axes", "limits", "linear", "modes", "normal", "offsets", "tuning")
+    __slots__ = ("along", "axes", "limits", "linear", "modes", "normal", "offsets", "rotation", "tuning")
 
     def __init__(self) -> None:
         self.axes = [ExploredAxis() for _ in range(6)]
@@ -38,10 +37,12 @@ class ExploredFrame:
         """the direction of the normal, if there is one"""
         self.normal: Vector | None = None
         self.offsets = [0.0] * 6
-        """Δx of every axis, m and rad, in the axes of the modes"""
+        """Δx of every axis, m and rad"""
         self.tuning: ImpedanceTuning | None = None
         self.limits: list[AxisLimits] = []
         self.modes: AxisModes | None = None
+        self.rotation: Array | None = None
+        """R_world_axes (3, 3) of the offsets; None: the world's"""
         self.linear: tuple[AxisRules, AxisRules] | None = None
         """rules of the translations: as they are given, and within the bounds of the modes"""
 
@@ -56,6 +57,7 @@ class ExploredFrame:
         time: float,
         period: float,
         modes: AxisModes | None = None,
+        rotation: Array | None = None,
     ) -> None:
         """Moves the offsets.
 
@@ -68,10 +70,13 @@ class ExploredFrame:
             velocity: of x_d (3,), m/s.
             time: s.
             period: s since the last tick.
-            modes: of the axes, in whose axes the rest is told; None: a force where F_d is not zero, world axes.
+            modes: of the axes; None: a force where F_d is not zero.
+            rotation: R_world_axes (3, 3), in which the rest is told; None: the world's. Axes that turn from tick to
+                tick, as those of a path on a curved surface do, take the offsets with them.
         """
-        if modes is not self.modes:
-            self._turn_axes(modes)
+        if modes is not self.modes or (rotation is None) is not (self.rotation is None):
+            self._turn_axes(modes, rotation)
+        self.rotation = rotation
         if tuning is not self.tuning:
             self._take(tuning)
         if measured is None:
@@ -110,13 +115,13 @@ class ExploredFrame:
         self.axes[len(self.limits) :] = [ExploredAxis() for _ in range(6 - len(self.limits))]
         self._bound()
 
-    def _turn_axes(self, modes: AxisModes | None) -> None:
+    def _turn_axes(self, modes: AxisModes | None, rotation: Array | None) -> None:
         """Other modes, perhaps of other axes: the offset stays where it is in the world, its axes begin anew."""
-        before, self.modes, self.tuning, self.linear = self.modes, modes, None, None
-        if not (_turned(before) or _turned(modes)):
+        self.modes, self.tuning, self.linear = modes, None, None
+        if self.rotation is None and rotation is None:
             return
-        world = in_world(before, self.offsets)
-        self.offsets = world if modes is None else modes.into(np.array(world)).tolist()
+        world = in_world(self.rotation, self.offsets)
+        self.offsets = world if rotation is None else in_world(rotation.T, world)
         self.axes = [ExploredAxis() for _ in range(6)]
         for axis, offset in zip(self.axes, self.offsets, strict=True):
             axis.offset = offset
@@ -192,17 +197,11 @@ class ExploredFrame:
         self.normal = within_cone(normal, wanted, config.normal_cone)
 
 
-def in_world(modes: AxisModes | None, offsets: list[float]) -> list[float]:
-    """(6,) of the axes of the modes in the world's."""
-    if not _turned(modes):
+def in_world(rotation: Array | None, offsets: list[float]) -> list[float]:
+    """(6,) of axes (3, 3) R_world_axes in the world's. Args: rotation: None: they are the world's."""
+    if rotation is None:
         return offsets
-    assert modes is not None
-    R = modes.rotation
-    return [*(R @ offsets[:3]).tolist(), *(R @ offsets[3:]).tolist()]
-
-
-def _turned(modes: AxisModes | None) -> bool:
-    return modes is not None and modes.turned
+    return [*(rotation @ offsets[:3]).tolist(), *(rotation @ offsets[3:]).tolist()]
 
 
 def _limits_along(limits: list[AxisLimits], normal: Vector) -> AxisLimits:

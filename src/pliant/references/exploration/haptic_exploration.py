@@ -32,6 +32,7 @@ CHANNELS: Mapping[str, str] = MappingProxyType(
 `AxisPhase`."""
 
 _LONGEST_PERIOD = 0.02  # s; after a pause the offset goes on from where it was, it does not make up for it
+_ROUNDING = 1e-9  # share of a wrench; a smaller part along an axis is none
 _FORGOTTEN = 0.1  # s; a frame without a task for longer starts anew, its controller did not follow the offset either
 
 
@@ -46,12 +47,12 @@ class ExplorationState:
 
 
 class _Frame:
-    """An explored frame, the names of its channels, and when it was last there."""
+    """An explored frame, the names of its channels, when it was last there, and how far it went along its axes."""
 
-    __slots__ = ("explored", "names", "time")
+    __slots__ = ("explored", "names", "place", "time", "way")
 
-    def __init__(self, frame: str, time: float) -> None:
-        self.explored, self.time = ExploredFrame(), time
+    def __init__(self, frame: str, time: float, place: Array) -> None:
+        self.explored, self.time, self.place, self.way = ExploredFrame(), time, place, np.zeros(3)
         self.names = tuple(f"exploration/{frame}/{name}" for name in CHANNELS)
 
 
@@ -123,7 +124,7 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         if frame is None or estimate.time - frame.time > _FORGOTTEN:
             if not asked:
                 return task  # nothing to feel, and nothing shifted so far
-            frame = state.frames[task.frame] = _Frame(task.frame, estimate.time)
+            frame = state.frames[task.frame] = _Frame(task.frame, estimate.time, task.position)
         frame.time = estimate.time
         if tuning is None:
             raise ConfigError(
@@ -132,22 +133,31 @@ class HapticExploration(ReferenceSource[ExplorationState]):
             )
         measured = _usable(estimate, task, asked)
         explored, velocity = frame.explored, task.velocity.tolist()
-        told = desired, measured, place, velocity
-        if modes is not None and modes.turned:
-            told = _in_axes(modes, task, measured)
-        explored.step(state.rules, tuning, *told, estimate.time, period, modes)
+        told, rotation = (desired, measured, place, velocity), None
+        if state.rules.config.direction == "axes":
+            rotation = task.task_rotation if modes is None else modes.rotation if modes.turned else None
+        if rotation is not None:
+            told = _in_axes(rotation, modes, task, measured, frame)
+        explored.step(state.rules, tuning, *told, estimate.time, period, modes, rotation)
         _report(frame, diagnostics)
         return _shifted(task, explored, tuning, desired, place)
 
 
 def _in_axes(
-    modes: AxisModes, task: TaskReference, measured: list[float] | None
+    R: Array, modes: AxisModes | None, task: TaskReference, measured: list[float] | None, frame: _Frame
 ) -> tuple[list[float], list[float] | None, list[float], list[float]]:
-    """Desired and measured wrench, place and velocity in the axes of the modes."""
-    felt = None if measured is None else modes.into(np.array(measured)).tolist()
-    place: list[float] = (modes.rotation.T @ task.position).tolist()
-    pressed = zip(modes.into(task.wrench).tolist(), modes.having("force"), strict=True)
-    return [part if asked else 0.0 for part, asked in pressed], felt, place, modes.into(task.velocity).tolist()
+    """Desired and measured wrench, place and velocity in axes R_world_axes (3, 3).
+
+    Where the axes may turn, which they do without modes, the place is the way along them: a turn alone is no motion.
+    """
+    desired, velocity = in_world(R.T, task.wrench.tolist()), in_world(R.T, task.velocity.tolist())
+    felt = None if measured is None else in_world(R.T, measured)
+    if modes is not None:
+        asked = zip(desired, modes.having("force"), strict=True)
+        return [part if force else 0.0 for part, force in asked], felt, (R.T @ task.position).tolist(), velocity
+    frame.way, frame.place = frame.way + R.T @ (task.position - frame.place), task.position
+    small = _ROUNDING * max(map(abs, desired))
+    return [part if abs(part) > small else 0.0 for part in desired], felt, frame.way.tolist(), velocity
 
 
 def _usable(estimate: Estimate, task: TaskReference, needed: bool) -> list[float] | None:
@@ -187,13 +197,13 @@ def _report(frame: _Frame, diagnostics: dict[str, float | Array]) -> None:
 def _shifted(
     task: TaskReference, explored: ExploredFrame, tuning: ImpedanceTuning, desired: list[float], place: list[float]
 ) -> TaskReference:
-    offsets = in_world(explored.modes, explored.offsets)
+    offsets = in_world(explored.rotation, explored.offsets)
     position = np.array((place[0] + offsets[0], place[1] + offsets[1], place[2] + offsets[2]))
     rotation = task.rotation
     if rotation is not None and (offsets[3] or offsets[4] or offsets[5]):
         rotation = exp3(offsets[3:]) @ rotation
     wrench = task.wrench
-    clamped = in_world(explored.modes, [axis.clamped for axis in explored.axes])
+    clamped = in_world(explored.rotation, [axis.clamped for axis in explored.axes])
     if any(clamped):
         wrench = np.array([f - c for f, c in zip(desired, clamped, strict=True)])
     return changed(task, position=position, rotation=rotation, wrench=wrench, tuning=tuning)

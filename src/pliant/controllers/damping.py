@@ -1,0 +1,86 @@
+"""What damps a stack beside its impedances: its joints, and motion beside the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import pinocchio as pin
+
+from pliant.controllers.operational_space import OperationalSpace
+from pliant.errors import ConfigError
+from pliant.rigid_body import mass_matrix
+from pliant.signals import TaskReference
+from pliant.spatial import Array
+
+_NEAR_SINGULAR = OperationalSpace.singularity_damping**2  # 1/kg
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Raises ConfigError on construction for a number that no damper has."""
+
+    joint_damping: float = 0.0
+    """N·m·s/rad"""
+    motion_damping: float = 0.0
+    """1/s, times Λ and what a frame's velocity differs from its reference's by"""
+
+    def __post_init__(self) -> None:
+        for one in fields(self):
+            value = getattr(self, one.name)
+            if not (np.isfinite(value) and value >= 0.0):
+                raise ConfigError(f"{one.name} must be finite and not negative, got {value}")
+
+    @property
+    def any(self) -> bool:
+        """Whether it damps anything."""
+        return self != Damping()
+
+    def torque(
+        self,
+        model: pin.Model,
+        data: pin.Data,
+        q: Array,
+        v: Array,
+        frames: Sequence[tuple[int, TaskReference]],
+    ) -> Array:
+        """(n,) N·m.
+
+        Args:
+            model: of the robot.
+            data: scratch space, which is changed.
+            q: (n,) rad.
+            v: (n,) rad/s.
+            frames: index and reference of each frame.
+        """
+        found = -self.joint_damping * v
+        if self.motion_damping:
+            M = mass_matrix(model, data, q)
+            for frame, task in frames:
+                J = np.array(pin.computeFrameJacobian(model, data, q, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED))
+                found = found + self.motion_damping * _beside_reference(M, J, v, task)
+        return found
+
+
+def _beside_reference(M: Array, J: Array, v: Array, task: TaskReference) -> Array:
+    """(n,) Jᵀ Λ (ẋ_d − J v), N·m·s: multiplied by a rate in 1/s, the rate at which that difference decays.
+
+    Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹ is the inertia of the frame (Khatib 1987, "A unified approach for motion and force control
+    of robot manipulators", eq. 14), δ as in operational-space control. It takes power from the difference, whatever
+    the posture. Rotations count where the reference has one; axes whose mode is "free" are left out.
+
+    Args:
+        M: (n, n).
+        J: (6, n) of the frame, world axes.
+        v: (n,) rad/s.
+        task: of the frame.
+    """
+    rows = 3 if task.rotation is None else 6
+    motion, wanted = J[:rows], task.velocity[:rows]
+    if task.modes is not None:
+        kept, R = ~np.array(task.modes.having("free")[:rows]), task.modes.rotation.T
+        motion = np.vstack([R @ J[:3], R @ J[3:]])[:rows][kept]
+        wanted = task.modes.into(task.velocity)[:rows][kept]
+    mobility = motion @ np.linalg.solve(M, motion.T) + _NEAR_SINGULAR * np.eye(len(motion))
+    return motion.T @ np.linalg.solve(mobility, wanted - motion @ v)
