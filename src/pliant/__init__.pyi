@@ -10,6 +10,8 @@ from pliant.estimation import MomentumObserver as MomentumObserver
 from pliant.estimation import WrenchEstimator as WrenchEstimator
 from pliant.face.result import Comparison as Comparison
 from pliant.face.result import RunResult as RunResult
+from pliant.face.rollout import Rollout as Rollout
+from pliant.face.rollout import rollout as rollout
 from pliant.face.run import compare as compare
 from pliant.face.run import run as run
 from pliant.interfaces import Controller as Controller

@@ -13,6 +13,7 @@ from pliant.configuration import merged
 from pliant.errors import ConfigError, PliantError, told
 from pliant.experiments.base import CaseConfig, Result, check_windows
 from pliant.experiments.config import assigned
+from pliant.experiments.open_pool import open_pool
 from pliant.experiments.pool import Lost, Pool, in_this_process
 from pliant.experiments.registry import get_study, study_of_run
 from pliant.experiments.results import Request, Run, key
@@ -97,6 +98,23 @@ def sweep(
     tasks = [Job(study_name, config, folder, logs) for config in configs]
     for index, outcome in pool(run_task, tasks):
         yield Run(Result(configs[index], (), outcome.reason), "lost", 0.0) if isinstance(outcome, Lost) else outcome
+
+
+def results_in_order(study_name: str, configs: Sequence[CaseConfig], jobs: int = 1) -> list[Result]:
+    """Runs configurations without logs, several at the same time, and returns their results in their order.
+
+    Args:
+        study_name: the study that the configurations belong to.
+        configs: what to run; what is there twice is run once.
+        jobs: processes on this machine; one means this very process. Results do not depend on it.
+
+    Raises:
+        ConfigError: fewer than one job.
+    """
+    different = list({key(config): config for config in configs}.values())
+    with open_pool(jobs if jobs < 1 else min(jobs, len(different))) as pool:
+        made = {key(run.result.config): run.result for run in sweep(study_name, different, pool=pool)}
+    return [made[key(config)] for config in configs]
 
 
 def run_task(task: Job) -> Run:

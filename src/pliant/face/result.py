@@ -14,7 +14,7 @@ from rich.console import Console
 from pliant.experiments import base
 from pliant.experiments.base import CaseConfig, Study
 from pliant.experiments.summarise import summarised
-from pliant.telemetry.columns import data_frame
+from pliant.face.metric_rows import MetricRows
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots.log import figures
 from pliant.telemetry.summary import Metric, Summary
@@ -73,7 +73,7 @@ class RunResult:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(MetricRows):
     """Several controllers on the same task with the same seeds."""
 
     study: Study[Any] = field(repr=False)
@@ -94,27 +94,10 @@ class Comparison:
         """Every controller's metrics, and how many of its runs failed, as text."""
         return _text(self.summary)
 
-    def to_pandas(self) -> Any:
-        """One row per run and metric: controller, seed, metric, value, unit, failure.
-
-        Raises:
-            MissingExtraError: pandas is not installed.
-        """
-        return data_frame("pandas", self.columns())
-
-    def to_polars(self) -> Any:
-        """The same as a polars DataFrame."""
-        return data_frame("polars", self.columns())
-
     def columns(self) -> dict[str, list[Any]]:
-        """The same as lists; a run without metrics has one row."""
-        rows = [
-            (run.config.controller, run.config.seed, name, value, unit, run.failure)
-            for run in self.runs
-            for name, value, unit in ([(m.name, m.value, m.unit) for m in run.metrics] or [(None, None, None)])
-        ]
-        names = ("controller", "seed", "metric", "value", "unit", "failure")
-        return {name: [row[place] for row in rows] for place, name in enumerate(names)}
+        """One row per run and metric as lists: controller, seed, metric, value, unit, failure; a run without metrics
+        has one row."""
+        return self.rows(self.runs, {})
 
     def __str__(self) -> str:
         return self.table()

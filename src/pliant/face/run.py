@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pliant.dotted import nested
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Study, check_windows
 from pliant.experiments.choice import chosen
-from pliant.experiments.config import IDENTITY
-from pliant.experiments.open_pool import open_pool
 from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
-from pliant.experiments.sweep import compared, sweep
+from pliant.experiments.sweep import compared, results_in_order
+from pliant.face.changes import checked_changes
 from pliant.face.result import Comparison, RunResult, save
 from pliant.tasks.task import Task
 from pliant.telemetry.log import Log
@@ -54,7 +52,7 @@ def run(
         PliantError: bad input, in one sentence; nothing was run.
     """
     overrides = {"controller": controller, "robot": robot, "seed": seed, "own_metrics": metrics}
-    asked = chosen(_named(what), case, overrides, _changes(changes))
+    asked = chosen(_named(what), case, overrides, checked_changes(changes))
     study, config = asked.study, asked.config
     check_windows(config)
     if out is not None:
@@ -97,25 +95,13 @@ def compare(
         raise ConfigError(f"a comparison takes a list of controllers, got the text {controllers!r}")
     if not controllers or seeds < 1:
         raise ConfigError(f"a comparison needs a controller and a seed, got {len(controllers)} and {seeds}")
-    choice = chosen(_named(what), case, {"robot": robot, "own_metrics": metrics}, _changes(changes))
+    choice = chosen(_named(what), case, {"robot": robot, "own_metrics": metrics}, checked_changes(changes))
     study = choice.study
     asked = compared(choice.config, controllers, seeds)
     for config in asked[::seeds]:
         check_windows(config)
         study.build(config)  # errors of a controller are found before anything runs
-    made: dict[tuple[str, int], Any] = {}
-    with open_pool(min(jobs, len(asked))) as pool:
-        for done in sweep(study.name, asked, pool=pool):
-            made[done.result.config.controller, done.result.config.seed] = done.result
-    return Comparison(study, [made[config.controller, config.seed] for config in asked])
-
-
-def _changes(given: Mapping[str, Any]) -> dict[str, Any]:
-    changes = nested(given)
-    for key in IDENTITY:
-        if key in changes:
-            raise ConfigError(f"{key!r} says which run it is and cannot be changed")
-    return changes
+    return Comparison(study, results_in_order(study.name, asked, jobs))
 
 
 def _named(what: str | Path | Task) -> str | Task:
