@@ -78,7 +78,7 @@ def test_an_impossible_value_is_refused_with_the_reason(live: Live) -> None:
 
 def test_a_push_shows_in_the_plots(live: Live) -> None:
     live.open_tab("Touch")
-    live.tab.get_by_role("button", name="Back to the study's target").click()
+    live.tab.get_by_role("button", name="Back to the task's target").click()
     until(lambda: live.latest("contact") == 0.0, "no contact")
     live.settle(2.0)
     calm = float(np.abs(live.column("error.z")[-25:]).max())

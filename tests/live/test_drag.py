@@ -46,7 +46,7 @@ def test_a_dragged_target_moves_the_robot(live: Live) -> None:
     """The handle's upward arrow is dragged with the mouse and the tool follows; above the arrow nothing is grabbed."""
     live.open_tab("Touch")
     until(lambda: live.page.target.handle.visible, "the handle")
-    live.tab.get_by_role("button", name="Back to the study's target").click()
+    live.tab.get_by_role("button", name="Back to the task's target").click()
     live.settle(2.0)
     start = np.array(live.page.target.handle.position)
     assert np.abs(pull(live, start, 0.30, 0.36)).max() == 0.0
@@ -58,5 +58,5 @@ def test_a_dragged_target_moves_the_robot(live: Live) -> None:
     assert np.abs(moved[:2]).max() < 5e-3
     live.settle(2.0)
     assert abs(live.latest("error.z")) < 5.0  # mm: the tool is where the handle is
-    live.tab.get_by_role("button", name="Back to the study's target").click()
+    live.tab.get_by_role("button", name="Back to the task's target").click()
     live.settle(1.0)
