@@ -113,7 +113,7 @@ class StepLimit(Controller[StepLimitState]):
                 torque = wanted - held_back
                 exceeded = max(float((np.abs(torque - sent) / self.step_max).max()) - 1.0, 0.0)
             inner, clamped = self.inner.kept_back(inner, held_back), clamped + held_back
-        bounded = Command(command.time, torque, clamped, _With(command.diagnostics, energy, exceeded))
+        bounded = Command(command.time, torque, clamped, _with(command.diagnostics, energy, exceeded))
         return bounded, StepLimitState(inner, estimate.q, torque, held_back, energy)
 
 
@@ -126,14 +126,20 @@ def _affordable(held_back: Array, way: Array, diagnostics: Mapping[str, Any]) ->
     return spendable / cost if cost > spendable else 1.0
 
 
+def _with(inner: Mapping[str, Any], energy: float, exceeded: float) -> Mapping[str, Any]:
+    """A controller's channels and two more: a dict is copied, which is faster to read; what reads its channels from
+    elsewhere stays as it is."""
+    added = {"energy/step_limit": energy, "step_limit/exceeded": exceeded}
+    return {**inner, **added} if type(inner) is dict else _With(inner, added)
+
+
 class _With(Mapping[str, "float | Array"]):
     """The inner controller's channels and two more, without copying them."""
 
     __slots__ = ("_added", "_inner")
 
-    def __init__(self, inner: Mapping[str, float | Array], energy: float, exceeded: float) -> None:
-        self._inner = inner
-        self._added = {"energy/step_limit": energy, "step_limit/exceeded": exceeded}
+    def __init__(self, inner: Mapping[str, float | Array], added: Mapping[str, float]) -> None:
+        self._inner, self._added = inner, added
 
     def __getitem__(self, name: str) -> float | Array:
         return self._added[name] if name in self._added else self._inner[name]
