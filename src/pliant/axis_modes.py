@@ -13,6 +13,8 @@ from pliant.errors import ConfigError, ShapeError
 from pliant.spatial import Array
 
 Mode = Literal["motion", "force", "free"]
+Asked = Literal["motion", "press", "yield", "free"]
+"""of an axis of a task: as its mode, where a force above 0 N presses and one of 0 N yields"""
 AXIS_NAMES = ("x", "y", "z", "about x", "about y", "about z")
 
 

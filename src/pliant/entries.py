@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
+from pliant.axis_modes import Asked
 from pliant.configuration import Config, merged
 from pliant.dotted import flat
 from pliant.errors import ConfigError, options
@@ -70,6 +71,13 @@ class Believed:
     """name of each phase in the references → whether the frame touches in it; empty: phases mean nothing"""
     tunings: Mapping[str, ImpedanceTuning] = field(default_factory=lambda: _NOTHING)
     """frame → impedance that the references carry"""
+    axes: Mapping[str, tuple[Asked, ...]] = field(default_factory=lambda: _NOTHING)
+    """phase → what is asked of the three axes of its task, the third along its force; empty: the force alone, and a
+    motion beside it"""
+
+
+def _always(config: Any) -> bool:
+    return True
 
 
 def _no_advice(robot: Robot, config: Any, period: float) -> tuple[str, ...]:
@@ -111,6 +119,8 @@ class ControllerEntry(Generic[C]):
     """what holds for its commands, and under which conditions, in a few words"""
     regulates_force: bool = False
     """whether it, with its reference filter, drives the contact force to the desired one"""
+    yields: Callable[[C], bool] = _always
+    """configuration → whether, where it regulates forces, 0 N are a request as any other force is"""
     needs: Callable[[C], Needs] = _needs_nothing
     """configuration → signals that it needs"""
     suggest: Callable[[Robot, C, Believed], C] = _as_it_is

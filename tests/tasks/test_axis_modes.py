@@ -52,7 +52,7 @@ def wall_force(task: Task) -> float:
 
 
 @pytest.mark.study
-@pytest.mark.parametrize("controller", ["haptic", "operational-space"])
+@pytest.mark.parametrize("controller", ["haptic", "operational-space", "offset-free-mpc", "force-feedback-mpc"])
 def test_a_force_of_zero_is_a_request(controller: str) -> None:
     free = ("free", "free", "free")
     assert wall_force(against_a_wall(("motion", "motion", "motion", *free), controller)) > 2.0  # the control
@@ -166,7 +166,37 @@ def test_a_predictive_controller_says_which_axes_it_does_not_follow() -> None:
         return [text for text in study.build(study.case("wall")).warnings if "will not be held" in text]
 
     free = ("free", "free", "free")
-    (text,) = said(("force", "free", "motion", "force", "free", "motion"), "offset-free-mpc")
-    assert "phase 'stay' (x, y, about x, about y)" in text
+    asked = ("force", "free", "motion", "force", "free", "motion")
+    (text,) = said(asked, "offset-free-mpc")
+    assert "phase 'stay' (about x, about y)" in text
+    (text,) = said(asked, "classical-mpc")  # that does not predict from the measured force
+    assert "phase 'stay' (x, about x, about y)" in text
+    assert said(("force", "free", "motion", *free), "offset-free-mpc") == []
     assert said(("motion", "motion", "motion", *free), "offset-free-mpc") == []
-    assert said(("force", "free", "motion", *free), "haptic") == []
+    assert said(asked, "haptic") == []
+    study = of_value(against_a_wall(("force", "free", "motion", *free), "haptic-paper"), "wall")
+    warnings = study.build(study.case("wall")).warnings
+    assert any("takes 0 N for no request" in text and "phase 'stay' (x)" in text for text in warnings)
+
+
+@pytest.mark.study
+def test_a_predictive_controller_presses_on_a_floor_and_yields_to_a_wall() -> None:
+    """15 N on a floor while the target stands 6 mm inside a wall along x."""
+
+    def forces(along_x: str) -> Array:
+        modes = (along_x, "motion", "force", "free", "free", "free")
+        floor = {"shape": "plane", "pose": {"xyz": (0.75, 0.0458, -0.0117)}, "friction": 0.1}
+        wall = {"shape": "plane", "pose": {"xyz": (0.771, 0.0458, 0.0), "rpy": (0.0, -90.0, 0.0)}, "friction": 0.1}
+        touching = {"until": {"any": [{"force": 12.0}, {"timeout": 3.0}]}}
+        down = {"name": "down", "target": (0.745, 0.0458, -0.0017), "wrench": (0.0, 0.0, 15.0), **touching}
+        corner = {"name": "corner", "target": (0.762, 0.0458, -0.0017), "modes": modes, "duration": 0.9}
+        scene = {"floor": floor, "wall": wall}
+        made = run(against_a_wall(modes, "force-feedback-mpc", scene=scene, phase=[down, corner]))
+        assert made.failure is None, made.failure
+        inside = within(made.log, made.log.time("measurement/q"), "corner", 0.7)
+        return np.asarray(made.log["truth/tool/wrench"][inside, :3])
+
+    yielding = forces("force")
+    assert np.abs(yielding[:, 0]).max() < 0.3
+    np.testing.assert_allclose(yielding[:, 2], 15.0, atol=0.3)
+    assert np.abs(forces("motion")[:, 0]).min() > 20.0  # the control

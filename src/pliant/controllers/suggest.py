@@ -6,7 +6,13 @@ import numpy as np
 
 from pliant.controllers.advice import SAFE_PHASE
 from pliant.controllers.attractor import Law
-from pliant.controllers.config import FrameTaskConfig, OperationalSpaceConfig, StackConfig, TranslationConfig
+from pliant.controllers.config import (
+    FrameTaskConfig,
+    OperationalSpaceConfig,
+    RotationConfig,
+    StackConfig,
+    TranslationConfig,
+)
 from pliant.controllers.presets import SOFT_STACK
 from pliant.entries import Believed
 from pliant.rigid_body import mass_matrix
@@ -54,7 +60,14 @@ def _task(gains: FrameTaskConfig, frame: str, believed: Believed, joints: int) -
     if carried is not None and carried.axes == 3:
         return gains.model_copy(update={"frame": frame, "rotation": None, "translation": _translation(carried)})
     turned = believed.oriented and joints >= 6
-    return gains.model_copy(update={"frame": frame, "rotation": gains.rotation if turned else None})
+    rotation = gains.rotation
+    if rotation is None and frame == believed.frames[0]:  # gains of a leg have none
+        rotation = _rotation_of(SOFT_STACK)
+    return gains.model_copy(update={"frame": frame, "rotation": rotation if turned else None})
+
+
+def _rotation_of(config: StackConfig) -> RotationConfig | None:
+    return next((task.rotation for task in config.tasks.values() if task is not None and task.rotation), None)
 
 
 def _later(task: FrameTaskConfig, late: float) -> FrameTaskConfig:

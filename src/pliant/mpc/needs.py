@@ -8,6 +8,7 @@ import numpy as np
 
 from pliant.entries import Believed
 from pliant.interfaces import Lookahead, Needs
+from pliant.mpc.axis_costs import axis_costs
 from pliant.mpc.config import Compensation, Contact, MpcConfig
 from pliant.mpc.costs import PhaseCosts, Term
 from pliant.mpc.make_problem import task_inertia
@@ -16,11 +17,10 @@ from pliant.robot import Robot
 _POSTURE_SHARE = 0.05
 """of the default posture cost, where a task says nothing of phases or posture"""
 _TRACK = 1000.0  # 1/m²
+_POSITION = Term(weight=_TRACK, terminal_times_dt=False)
 _FELT = {
-    "free": PhaseCosts(translation=Term(weight=_TRACK, terminal_times_dt=False)),
-    "contact": PhaseCosts(
-        contact=True, translation=Term(weight=_TRACK, activation=(1.0, 1.0, 0.0), terminal_times_dt=False)
-    ),
+    "free": PhaseCosts(translation=_POSITION),
+    "contact": PhaseCosts(contact=True, translation=_POSITION.model_copy(update={"activation": (1.0, 1.0, 0.0)})),
 }
 
 
@@ -45,12 +45,12 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
     A phase that the configuration does not know has the costs of its last phase with contact, or of its first one
     without. Where the force is a state and nothing is estimated of the contact, its stiffness is the believed one.
     Where the task has no phases, the costs are those of contact or of free motion as it is felt, and the position
-    counts more against the posture.
+    counts more against the posture. Where phases ask something of each axis, each has such costs of its own.
     """
     named = bool(believed.phases)
     costs = config.costs
     posture = costs.posture.model_copy(update={"weight": _POSTURE_SHARE * costs.posture.weight})
-    return config.model_copy(
+    suited = config.model_copy(
         update={
             "costs": costs if named else costs.model_copy(update={"posture": posture}),
             "frame": believed.frames[0],
@@ -62,6 +62,9 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
             "contact": _on_surface(_as_stiff(robot, config, believed), believed),
         }
     )
+    if not believed.axes:
+        return suited
+    return suited.model_copy(update=axis_costs(suited, believed.axes, _POSITION))
 
 
 def _as_stiff(robot: Robot, config: MpcConfig, believed: Believed) -> Contact:

@@ -11,6 +11,7 @@ import pinocchio as pin
 from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError
 from pliant.interfaces import Controller, Needs
+from pliant.mpc.axis_costs import with_felt_phases
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.controller import MpcController
 from pliant.mpc.costs import Term
@@ -65,6 +66,7 @@ def _entry(
         regulates_force=True,
         needs=needs,
         suggest=suggest_mpc,
+        filter=with_felt_phases,
     )
 
 

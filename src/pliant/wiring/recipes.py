@@ -52,6 +52,10 @@ def _advise(robot: Robot, config: HapticConfig, period: float) -> tuple[str, ...
     return advise_stack(robot, config.impedance, period)
 
 
+def _yields(config: HapticConfig) -> bool:
+    return config.exploration is None or config.exploration.mode == "adaptive"
+
+
 def _needs(config: HapticConfig) -> Needs:
     return replace(needs_of_law(config.impedance.law), wrench=config.exploration is not None)
 
@@ -105,6 +109,7 @@ def _entry(
         family="haptic",
         guarantees=guarantees,
         regulates_force=regulates,
+        yields=_yields,
         needs=_needs,
         suggest=_suggest,
         fixed=fixed,

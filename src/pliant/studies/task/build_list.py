@@ -39,7 +39,7 @@ from pliant.studies.task.listed import (
     stages_of,
     tracks_of,
 )
-from pliant.studies.task.pressed import asked_of, beside_the_force, pressed_planes
+from pliant.studies.task.pressed import asked_of, axes_of, beside_the_axes, pressed_planes, silent_axes
 from pliant.studies.task.sensor import known_load, sensor_of
 from pliant.studies.task.start import start_of
 from pliant.studies.task.timed import level, refuse_untimed, timed_source, touching
@@ -92,22 +92,32 @@ def listed(case: TaskCase) -> Listed:
     if case.timed:
         surface = None if level(stages) else surface  # nothing is believed of a horizontal one
         believed = replace(believed, oriented=True, surface=surface, phases=touching(stages, case.phase))
+    else:
+        believed = replace(believed, axes=axes_of(stages))
     parameters = case.controller_parameters(robot, believed)
     gentle = {} if case.timed else landings(case, robot, stages, start)
     return Listed(robot, believed, parameters, start, longest_of(case), None, gentle)
 
 
 def _not_held(case: TaskCase, made: Listed) -> tuple[str, ...]:
-    """What phases ask of their axes and a predictive controller does not do: it presses along one direction."""
-    if made.tracked is not None or case.entry.needs(made.parameters).preview is None:
+    """What phases ask of their axes and the controller does not do, in a sentence."""
+    entry = case.entry
+    predicts, yields = entry.needs(made.parameters).preview is not None, entry.yields(made.parameters)
+    if made.tracked is not None or (yields and not predicts):
         return ()
     stages = stages_of(case, made.robot, made.robot.placement(made.start, frame_of(case))[1])
-    beside = {stage.name: beside_the_force(stage) for stage in stages}
-    told = ", ".join(f"{name!r} ({', '.join(axes)})" for name, axes in beside.items() if axes)
+    feels = entry.needs(made.parameters).wrench and not case.timed
+    odd = {one.name: beside_the_axes(one, feels=feels) if predicts else silent_axes(one) for one in stages}
+    told = ", ".join(f"{name!r} ({', '.join(axes)})" for name, axes in odd.items() if axes)
     if not told:
         return ()
+    if not predicts:
+        return (
+            f"controller {case.controller!r} takes 0 N for no request: its impedance holds the axes on which phase"
+            f" {told} asks for it; haptic and operational-space yield",
+        )
     return (
-        f"controller {case.controller!r} presses along one direction and moves along the others: what modes ask beside"
+        f"controller {case.controller!r} weighs positions and forces along the axes of a force: what modes ask beside"
         f" that of phase {told} will not be held; haptic and operational-space hold it",
     )
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pliant.axis_modes import AXIS_NAMES, Mode
+from pliant.axis_modes import AXIS_NAMES, Asked, AxisModes, Mode
 from pliant.references.force_axes import task_axes
 from pliant.references.stages import Stage, StageChange
 from pliant.signals import TaskReference
@@ -16,6 +16,8 @@ from pliant.surfaces import FacetSurface, PlaneSurface, SurfaceGeometry
 
 _SAME = 1e-9
 """1 − cosine of the angle below which two directions are one"""
+_PLAIN: tuple[Asked, ...] = ("motion", "motion", "press")
+_MOTION: tuple[Asked, ...] = ("motion", "motion", "motion")
 
 
 def with_axes(stages: Sequence[Stage]) -> tuple[Stage, ...]:
@@ -48,19 +50,54 @@ def asked_of(task: TaskReference) -> tuple[Mode, ...]:
     return () if task.modes is None else task.modes.modes
 
 
-def beside_the_force(stage: Stage) -> tuple[str, ...]:
-    """Axes of which a phase asks something else than a motion or a part of its force: 0 N, a moment, or nothing; three
-    free rotations are an orientation that is left alone."""
-    modes, told = asked_of(stage.task), stage.task.modes
+def asked_axes(task: TaskReference) -> tuple[Asked, ...] | None:
+    """What a task asks of its three axes, the third along its force; None where they are not those of its modes."""
+    modes, axes = task.modes, task.task_rotation
+    if modes is None:
+        return None
+    turn = (np.eye(3) if axes is None else axes).T @ modes.rotation
+    place = np.argmax(np.abs(turn), axis=1)
+    if 1.0 - float(np.abs(turn[np.arange(3), place]).min()) > _SAME:
+        return None
+    presses = bool(np.any(task.wrench[:3]))
+    forces: tuple[Asked, ...] = ("yield", "yield", "press" if presses else "yield")
+    told = [modes.modes[axis] for axis in place.tolist()]
+    return tuple(force if mode == "force" else mode for mode, force in zip(told, forces, strict=True))
+
+
+def axes_of(stages: Sequence[Stage]) -> dict[str, tuple[Asked, ...]]:
+    """Phase → what it asks of the three axes of its task; empty where no phase asks for more than one force that
+    presses and a motion beside it."""
+    found = {stage.name: asked_axes(stage.task) or _PLAIN for stage in stages}
+    return found if any(one not in (_PLAIN, _MOTION) for one in found.values()) else {}
+
+
+def beside_the_axes(stage: Stage, *, feels: bool) -> tuple[str, ...]:
+    """Axes of which a phase asks what weights on the axes of its task cannot say: a moment, a single free rotation,
+    or 0 N and freedom beside a force that is along none of them. Three free rotations are an orientation that is left
+    alone. Args: feels: whether the measured force is predicted; if not, no axis yields to it."""
+    told = stage.task.modes
     if told is None:
         return ()
-    wrench = told.into(stage.task.wrench)
-    small = 1e-9 * max(float(np.abs(wrench).max()), 1e-9)
-    silent = [place for place in range(6) if modes[place] == "force" and (place >= 3 or abs(wrench[place]) <= small)]
-    loose = [place for place in range(3) if modes[place] == "free"]
-    if "free" in modes[3:] and set(modes[3:]) != {"free"}:
-        loose += [place for place in range(3, 6) if modes[place] == "free"]
-    return tuple(AXIS_NAMES[place] for place in sorted(silent + loose))
+    odd = [place for place in range(3, 6) if told.modes[place] == "force"]
+    if "free" in told.modes[3:] and set(told.modes[3:]) != {"free"}:
+        odd += [place for place in range(3, 6) if told.modes[place] == "free"]
+    turned = asked_axes(stage.task) is None
+    odd += [place for place in _silent(told, stage.task.wrench) if place < 3 and (turned or not feels)]
+    odd += [place for place in range(3) if turned and told.modes[place] == "free"]
+    return tuple(AXIS_NAMES[place] for place in sorted(odd))
+
+
+def silent_axes(stage: Stage) -> tuple[str, ...]:
+    """Axes on which a phase asks for 0 N or 0 N·m."""
+    told = stage.task.modes
+    return () if told is None else tuple(AXIS_NAMES[place] for place in _silent(told, stage.task.wrench))
+
+
+def _silent(modes: AxisModes, wrench: Array) -> list[int]:
+    told = modes.into(wrench)
+    small = 1e-9 * max(float(np.abs(told).max()), 1e-9)
+    return [place for place in range(6) if modes.modes[place] == "force" and abs(told[place]) <= small]
 
 
 def _frame(task: TaskReference) -> Array:
