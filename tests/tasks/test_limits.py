@@ -55,6 +55,8 @@ def test_a_task_that_asks_for_more_than_it_allows_is_refused(limits: dict[str, A
     with pytest.raises(ConfigError, match=message) as caught:
         study.build(merged(study.case("wipe"), {**SHORT, "limits": limits}))
     assert "\n" not in str(caught.value)
+    with pytest.raises(ConfigError, match=message):  # the check does not call it possible
+        study.check(merged(study.case("wipe"), {**SHORT, "limits": limits}))
 
 
 @pytest.mark.parametrize(

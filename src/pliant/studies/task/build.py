@@ -56,12 +56,12 @@ def _planned(text: str) -> Planned:
     case = TaskCase.model_validate_json(text)
     robot, surface, path = laid_out(case, case.robot)
     settings = SurfaceTaskSettings(**case.phases.model_dump(), spins=case.path.spins)
-    _refuse(case, path)
+    refuse_path(case, path)
     references = surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
     return Planned(robot, surface, path, references)
 
 
-def _refuse(case: TaskCase, path: Toolpath) -> None:
+def refuse_path(case: TaskCase, path: Toolpath) -> None:
     """Raises ConfigError where the task asks for more than its limits allow."""
     force = case.force.largest if path.force is None else float(max(path.force.at(t).value[0] for t in path.times))
     speeds = (("path.speed", case.path.speed), ("phases.approach_speed", case.phases.approach_speed))

@@ -12,6 +12,7 @@ from pliant.references.reach.check import ReachCheck, check_reach
 from pliant.references.reach.course import Course, course_of, course_through, instants_of
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import Array
+from pliant.studies.task.build import refuse_path
 from pliant.studies.task.build_list import Listed, listed, planner_of
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import force_of, laid_out
@@ -28,6 +29,7 @@ def checked_path(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         PliantError: a robot, frame or path that there is not.
     """
     robot, surface, path = laid_out(case, case.robot)
+    refuse_path(case, path)
     phases = case.phases
     course = course_of(path, force_of(case), phases.stand_off, phases.approach_speed, phases.leave)
     true = [true_surface(one, surface, path).geometry for one in _seeds(case, drawn)]
