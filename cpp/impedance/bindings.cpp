@@ -124,6 +124,8 @@ Law law_named(const std::string& name) {
 Shape shape_named(const std::string& name) {
   if (name == "exponential") return Shape::Exponential;
   if (name == "tanh") return Shape::Tanh;
+  if (name == "exponential-printed") return Shape::ExponentialPrinted;
+  if (name == "tanh-printed") return Shape::TanhPrinted;
   reject("unknown profile " + name);
 }
 

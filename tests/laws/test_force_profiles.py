@@ -61,7 +61,60 @@ def test_the_tanh_profile_without_its_shift_jumps_at_the_knee() -> None:
     assert float(profile.force(profile.linear_range + 1e-12)[0] - profile.knee_force[0]) < 1e-6
 
 
-@pytest.mark.parametrize("shape", list(Shape))
+# ---------------------------------------------------------------------- the profiles as they are printed
+
+PRINTED = {
+    Shape.EXPONENTIAL_PRINTED: profile_of(5000.0, 150.0, 0.006, 0.005, Shape.EXPONENTIAL_PRINTED),
+    Shape.TANH_PRINTED: profile_of(6000.0, 300.0, 0.025, shape=Shape.TANH_PRINTED),
+}
+
+
+@pytest.mark.parametrize("profile", PRINTED.values(), ids=list(PRINTED))
+def test_a_printed_profile_is_odd_monotone_and_bounded_and_the_slope_of_its_energy(profile: ForceProfile) -> None:
+    a = grid(profile)
+    force, step = profile.force(a), 1e-9
+    assert np.array_equal(profile.force(-a), -force)
+    assert np.all(np.diff(force, axis=0) >= 0.0)
+    assert float(force.max()) <= float(profile.force_max[0])
+    smooth = np.abs(a - profile.linear_range) > 2 * step
+    smooth &= np.abs(a - profile.range) > 2 * step
+    slope = (profile.energy(a + step) - profile.energy(a - step)) / (2 * step)
+    np.testing.assert_allclose(slope[smooth], force[smooth], atol=1e-4 * float(profile.force_max[0]))
+    total = np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(a, axis=0))
+    assert float(profile.energy(a[-1])[0]) == pytest.approx(float(total), rel=1e-3)
+
+
+def test_the_printed_exponential_jumps_where_it_should_have_saturated() -> None:
+    """Table I's end-effector: F_0 = 25 N, 26 N just before x_b = 6 mm, and there 150 N at once; with the factor ΔF (the
+    control) it is continuous."""
+    printed, mended = PRINTED[Shape.EXPONENTIAL_PRINTED], profile_of(5000.0, 150.0, 0.006, 0.005)
+    before, after = np.array([0.006 - 1e-9]), np.array([0.006])
+    assert float(printed.force(before)[0]) == pytest.approx(26.0, abs=1e-3)
+    assert float(printed.force(after)[0]) == 150.0
+    assert float(mended.force(before)[0]) == pytest.approx(150.0, abs=1e-3)
+
+
+def test_the_printed_tanh_jumps_where_its_linear_part_ends() -> None:
+    """F_0 = 0.95 · 6000 · 0.025 = 142.5 N, and ½ ΔF (tanh(π − 0.05/S) + 1) more at once; the shifted one (the control)
+    is continuous. Values of eq. 4, worked out here."""
+    printed, mended = PRINTED[Shape.TANH_PRINTED], profile_of(6000.0, 300.0, 0.025, shape=Shape.TANH)
+    knee = 0.95 * 0.025
+    rise = 300.0 - 142.5
+    jump = 0.5 * rise * (np.tanh(np.pi - 0.05 / 0.1353) + 1.0)
+    assert jump == pytest.approx(156.9, abs=0.1)
+    for profile, expected in ((printed, jump), (mended, 0.0)):
+        step = float(profile.force([knee + 1e-12])[0] - profile.force([knee])[0])
+        assert step == pytest.approx(expected, abs=1e-3)
+    at_range = 142.5 + 0.5 * rise * (np.tanh(np.pi) + 1.0)
+    assert float(printed.force([0.025])[0]) == pytest.approx(at_range)
+
+
+def test_a_printed_tanh_whose_linear_part_passes_its_bound_is_refused() -> None:
+    with pytest.raises(ConfigError, match=r"F_max must be at least 0\.95 K_0 x_b = 142\.5, got 100"):
+        profile_of(6000.0, 100.0, 0.025, shape=Shape.TANH_PRINTED)
+
+
+@pytest.mark.parametrize("shape", [Shape.EXPONENTIAL, Shape.TANH, Shape.EXPONENTIAL_PRINTED])
 def test_force_max_is_reached_at_the_range(shape: Shape) -> None:
     profile = profile_of(2500.0, 100.0, 0.06, 0.03, shape)
     assert float(profile.force([0.06])[0]) == pytest.approx(100.0, rel=2e-3)

@@ -109,7 +109,7 @@ void run_axis(Law law, Shape shape, const char* name) {
 }
 
 void run_profile(Shape shape, const char* name) {
-  const Axis axis = make_axis(shape, 800.0, 20.0, 0.05, 0.01);
+  const Axis axis = make_axis(shape, 400.0, 20.0, 0.05, 0.01);
   for (double x : {0.002, 0.02, 0.045, 0.08}) {
     const double h = 1e-6;
     const double slope = (energy(shape, axis, x + h) - energy(shape, axis, x - h)) / (2.0 * h);
@@ -118,6 +118,8 @@ void run_profile(Shape shape, const char* name) {
 }
 
 void run() {
+  run_profile(Shape::ExponentialPrinted, "exponential-printed");
+  run_profile(Shape::TanhPrinted, "tanh-printed");
   for (Shape shape : {Shape::Exponential, Shape::Tanh}) {
     const char* name = shape == Shape::Tanh ? "tanh" : "exponential";
     run_profile(shape, name);

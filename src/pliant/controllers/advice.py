@@ -126,6 +126,8 @@ def _knee_leak(profile: ForceProfile, axis: int, speed: float, period: float) ->
     """J of leakage in one sample: the force that is held lags behind the rise of the profile within the bend."""
     rise = float(profile.force_max[axis] - profile.knee_force[axis])
     way = speed * period
+    if profile.shape in (Shape.EXPONENTIAL_PRINTED, Shape.TANH_PRINTED):
+        return rise * way  # a step
     if profile.shape is Shape.EXPONENTIAL:
         rise *= -math.expm1(-way / float(profile.length[axis]))
     else:

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from pliant.controllers.attractor import Law
 from pliant.controllers.operational_space import Compensation, OperationalSpace
 from pliant.controllers.phase_settings import PhaseSettings
-from pliant.controllers.profiles import Shape
+from pliant.controllers.profiles import ForceProfile, Shape
 from pliant.controllers.task import FrameTask
 from pliant.entries import ControllerConfig
 from pliant.errors import PliantError
@@ -70,7 +70,7 @@ class FrameTaskConfig(ControllerConfig):
     @model_validator(mode="after")
     def _is_possible(self) -> Self:
         try:
-            self.tuning()
+            ForceProfile.of(self.tuning(), self.profile)
         except PliantError as error:
             raise ValueError(f"frame {self.frame!r}: {error}") from None
         return self
