@@ -44,7 +44,7 @@ def test_a_task_says_what_may_be_turned_and_how_far() -> None:
     force, speed = task().dials
     assert (force.name, force.unit, force.value, force.high) == ("force", "N", 20.0, 40.0)
     assert (speed.name, speed.unit, speed.value, speed.high) == ("speed", "m/s", 0.05, 0.2)
-    free, pressed = get_study("figure8").case("figure8"), get_study("floor").case("floor")
+    free, pressed = get_study("figure8-plain").case("figure8-plain"), get_study("floor").case("floor")
     assert free.dials == ()  # nothing is pressed, and its motion is not along a path
     assert [(dial.name, dial.value, dial.high) for dial in pressed.dials] == [("force", 80.0, 160.0)]
     assert get_study("stack").case("singular").dials == ()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import mujoco
 import numpy as np
 import pinocchio as pin
@@ -24,7 +22,6 @@ from pliant.simulation import (
     Surface,
     World,
     floor,
-    random_pushes,
     table,
 )
 
@@ -158,18 +155,6 @@ def test_a_push_changes_the_momentum_by_its_impulse(leg3: Robot) -> None:
     momentum = (upper + np.triu(upper, 1).T) @ v
     impulse = jacobian(leg3, q, "foot")[:3].T @ np.array(push.force) * push.duration
     np.testing.assert_allclose(momentum, impulse, rtol=0.03, atol=1e-4)
-
-
-def test_random_pushes_stay_in_their_ranges_and_repeat_with_the_seed() -> None:
-    pushes = random_pushes(np.random.default_rng(7), "elbow", 20.0, start=1.0)
-    assert pushes == random_pushes(np.random.default_rng(7), "elbow", 20.0, start=1.0)
-    assert pushes != random_pushes(np.random.default_rng(8), "elbow", 20.0, start=1.0)
-    for push, following in itertools.pairwise(pushes):
-        assert 10.0 <= np.linalg.norm(push.force) <= 30.0
-        assert 0.2 <= push.duration <= 0.6
-        assert 0.1 <= following.start - push.start - push.duration <= 0.4
-    with pytest.raises(ConfigError, match="range from low to high"):
-        random_pushes(np.random.default_rng(0), "elbow", 1.0, force=(30.0, 10.0))
 
 
 def test_a_wrist_sensor_feels_the_tools_weight_in_its_own_axes(iiwa14: Robot) -> None:

@@ -12,14 +12,15 @@ from pliant.experiments.base import Result
 from pliant.experiments.runner import run_case
 from pliant.studies.haptic import STUDY
 from pliant.studies.haptic.config import Check, HapticCaseConfig
-from pliant.studies.haptic.steps_config import HapticPlannerConfig, OnlineChanges, Step
+from pliant.studies.haptic.steps_config import OnlineChanges, Step
+from pliant.tasks.phase import PlannerConfig
 
 pytestmark = pytest.mark.study
 
 SHORT_FLOOR = STUDY.case("floor").model_copy(
     update={
         "duration": 3.2,
-        "planner": HapticPlannerConfig(acceleration=0.8),  # m/s², as in the full study's longer slide
+        "planner": PlannerConfig(acceleration=0.8),  # m/s², as in the full study's longer slide
         "steps": (
             Step(time=0.0, target=(0.06, 0.0, 0.017), force=(0.0, 0.0, 40.0)),
             Step(time=1.2, target=(0.10, 0.0, 0.017)),

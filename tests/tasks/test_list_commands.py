@@ -79,8 +79,8 @@ def test_a_place_that_the_planner_would_bring_back_is_checked_as_asked(tmp_path:
 
 
 def test_events_at_drawn_times_are_checked_too() -> None:
-    study = study_of("push-box")
-    case = merged(study.case("push-box-harder"), {"event": [{"time": {"uniform": (3.0, 3.4)}, "change": {}}]})
+    study = study_of("box-tip")
+    case = merged(study.case("box-tip-harder"), {"event": [{"time": {"uniform": (3.0, 3.4)}, "change": {}}]})
     down = [{"time": {"uniform": (3.0, 3.4)}, "change": {"wrench": [0.0, 0.0, 4000.0]}}]
     assert study.check(case, 3).reachable
     found = study.check(merged(case, {"event": down}), 3)
@@ -88,7 +88,9 @@ def test_events_at_drawn_times_are_checked_too() -> None:
     assert len({one.time for one in found.surfaces}) > 1  # each at its own time
 
 
-@pytest.mark.parametrize(("name", "controller"), [("floor", "haptic"), ("figure8", "stack"), ("push-box", "haptic")])
+@pytest.mark.parametrize(
+    ("name", "controller"), [("floor", "haptic"), ("figure8-plain", "stack"), ("box-tip", "haptic")]
+)
 def test_a_list_is_searched_as_any_task(name: str, controller: str) -> None:
     sought = find_search(study_of(name), controller)
     assert any(key.endswith("stiffness") for key in sought.parameters)

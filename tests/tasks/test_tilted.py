@@ -65,7 +65,7 @@ def test_the_axes_of_a_force_are_those_of_its_frame_where_it_lies_along_one() ->
 
 
 def test_phases_that_press_to_different_sides_believe_a_plane_for_each() -> None:
-    made = listed(study_of("push-box").case("push-box"))
+    made = listed(study_of("box-tip").case("box-tip"))
     assert isinstance(made.believed.surface, PlaneSurface)  # the two that push, push the same way
     np.testing.assert_allclose(made.believed.surface.rotation[:, 2], [-1.0, 0.0, 0.0], atol=1e-12)
     floor = PlaneSurface.facing([0.0, 0.0, 1.0])

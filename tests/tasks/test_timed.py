@@ -11,6 +11,7 @@ import pytest
 
 from pliant.configuration import merged
 from pliant.errors import ConfigError
+from pliant.experiments.pushes import pushes_of
 from pliant.experiments.registry import get_study
 from pliant.interfaces import Lookahead
 from pliant.mpc.config import MpcConfig
@@ -23,7 +24,7 @@ from pliant.studies.task.config import TaskCase, case_of
 from pliant.studies.task.start import start_of
 from pliant.studies.task.study import study_of
 from pliant.studies.task.timed import timed_source
-from pliant.studies.task.world import imperfections_of, pushes_of
+from pliant.studies.task.world import imperfections_of
 from pliant.tasks import load_task
 from pliant.tasks.parts import Pose, ToolConfig
 from tests.tasks.test_phases import recorded
@@ -299,7 +300,7 @@ def test_imperfections_change_a_named_set() -> None:
 
 def test_level_pushes_are_horizontal_in_any_direction() -> None:
     case = study_of(FILE).case("fast-pushed")
-    pushes = [push for seed in range(5) for push in pushes_of(merged(case, {"seed": seed}), 10.0)]
+    pushes = [push for seed in range(5) for push in pushes_of(case.disturbance, seed, 10.0)]
     forces = np.array([push.force for push in pushes])
     assert [push.start for push in pushes[:2]] == [4.0, pytest.approx(5.3)]
     np.testing.assert_allclose(np.linalg.norm(forces, axis=1), 20.0)
@@ -307,7 +308,7 @@ def test_level_pushes_are_horizontal_in_any_direction() -> None:
     assert (forces[:, :2].min(axis=0) < -10.0).all()
     assert (forces[:, :2].max(axis=0) > 10.0).all()
     slanted = merged(case, {"disturbance": [{"push": 20.0, "start": 4.0}]})
-    assert pushes_of(slanted, 10.0)[0].force[2] != 0.0
+    assert pushes_of(slanted.disturbance, slanted.seed, 10.0)[0].force[2] != 0.0
 
 
 def test_a_timed_list_is_checked_along_its_whole_way() -> None:

@@ -141,7 +141,7 @@ def test_a_configuration_can_be_inherited(odd: str) -> None:
     assert find_controller(f"{odd}:Heir").default.model_dump() == {"gain": 1.0}
 
 
-@pytest.mark.parametrize("task", ["haptic", "push-box", "press"])
+@pytest.mark.parametrize("task", ["haptic", "box-tip", "press"])
 def test_a_preview_is_given_wherever_it_is_asked_for(odd: str, task: str) -> None:
     more = {"checks": []} if task == "haptic" else {}
     result = pliant.run(task, controller=f"{odd}:Foresees", duration=0.004, **more)

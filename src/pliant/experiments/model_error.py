@@ -9,6 +9,7 @@ import pinocchio as pin
 
 from pliant.errors import ConfigError
 from pliant.robot import Robot
+from pliant.spatial import Array
 
 
 def with_mass_error(robot: Robot, share: float, rng: np.random.Generator) -> Robot:
@@ -29,9 +30,13 @@ def with_mass_error(robot: Robot, share: float, rng: np.random.Generator) -> Rob
         raise ConfigError(f"the error of the model's masses must be a share of 0 … below 1, got {share:g}")
     if share == 0.0:
         return robot
+    return with_masses(robot, rng.uniform(1.0 - share, 1.0 + share, robot.model.njoints - 1))
+
+
+def with_masses(robot: Robot, factors: Array) -> Robot:
+    """The robot with mass and inertia of each joint's link multiplied by a factor. Args: factors: one per joint."""
     model = robot.model.copy()
-    for joint in range(1, model.njoints):
-        factor = float(rng.uniform(1.0 - share, 1.0 + share))
+    for joint, factor in enumerate(factors.tolist(), start=1):
         true = model.inertias[joint]
         model.inertias[joint] = pin.Inertia(factor * true.mass, true.lever, factor * true.inertia)
     return replace(robot, model=model)

@@ -1,6 +1,6 @@
 """The simulated robot and its world. Controllers never import this."""
 
-from pliant.simulation.disturbances import Push, random_pushes
+from pliant.simulation.disturbances import Push
 from pliant.simulation.force_sensor import ForceSensor
 from pliant.simulation.imperfections.config import Imperfections
 from pliant.simulation.imperfections.plant import ImperfectPlant, ImperfectWorld
@@ -32,7 +32,6 @@ __all__ = [
     "World",
     "fixed_part",
     "floor",
-    "random_pushes",
     "table",
     "wall",
 ]

@@ -120,6 +120,11 @@ def _beside(folder: Path, task: Task) -> Task:
         update["path"] = task.path.model_copy(update={"file": str((folder / task.path.file).resolve())})
     if task.surface.file is not None:
         update["surface"] = task.surface.model_copy(update={"file": str((folder / task.surface.file).resolve())})
+    if any(one.file is not None for one in task.event):
+        update["event"] = tuple(
+            one if one.file is None else one.model_copy(update={"file": str((folder / one.file).resolve())})
+            for one in task.event
+        )
     if task.robot.endswith((".urdf", ".xml", ".mjcf")):
         update["robot"] = str((folder / Path(task.robot).expanduser()).resolve())
     return task.model_copy(update=update)

@@ -215,9 +215,8 @@ class Disturbance(Config):
     frame: str = Field(default="elbow", description="that is pushed")
     start: float = quantity(4.0, "s", "of the push; of the first gap, where there is one", ge=0.0)
     duration: Drawn = quantity(0.4, "s", "of a push, above zero")
-    gap: Drawn | None = quantity(
-        None, "s", "before each push, not negative: pushes come until the run ends; none: one push"
-    )
+    gap: Drawn | None = quantity(None, "s", "before each push, not negative: pushes come until `end`; none: one push")
+    end: float | None = quantity(None, "s", "from which on no push begins; none: the end of the run", gt=0.0)
 
     @model_validator(mode="after")
     def _can_be(self) -> Disturbance:
@@ -233,6 +232,13 @@ class Simulation(Config):
 
     period: float = quantity(1e-3, "s", "of control", ge=1e-4, le=0.02)
     physics_step: float = quantity(5e-4, "s", "of the simulation", ge=1e-5, le=2e-3)
+    drive_step: float | None = quantity(
+        None,
+        "s",
+        "of drives and gears where they are imperfect, a whole multiple of the physics step; none: the physics step",
+        ge=1e-5,
+        le=0.02,
+    )
     contact: Literal["mujoco", "explicit"] = Field(
         default="mujoco", description="law of contacts: MuJoCo's soft constraints, or a force law with stiction"
     )

@@ -1,16 +1,15 @@
-"""The parts of a task that is a list of phases: what each does, when it ends, what stands around, what changes."""
+"""The parts of a task that is a list of phases: what each does, when it ends, what stands around."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
 from pliant.configuration import Config
 from pliant.quantity import quantity
 from pliant.surfaces import EdgeSurface, HoleSurface
-from pliant.tasks.draws import Drawn
 from pliant.tasks.parts import Pose, Vector
 from pliant.tasks.timed import CurveConfig, PhaseMotion, WrenchProfile
 
@@ -164,15 +163,6 @@ class Phase(Config):
         return min((time for time in sure if time is not None), default=math.inf)
 
 
-class Event(Config):
-    """Something that the user changes while the robot moves."""
-
-    time: Drawn = quantity(0.0, "s", "since the start of the run; one draw a seed")
-    change: dict[str, Any] = Field(
-        description="target (m), wrench (N), stiffness (N/m), force_max (N), range (m), reset; or controller.NAME.KEY"
-    )
-
-
 class Thing(Config):
     """Something that stands around."""
 
@@ -218,8 +208,21 @@ class ImpedanceConfig(Config):
     range: PerAxis = quantity(0.025, "m", "x_b: error at which F_max is reached, and bound of the exploration")
 
 
+class Link(Config):
+    """A part of the robot that touches things along its length, beside the moved frame."""
+
+    to: str = Field(description="frame at its other end, on the same body")
+    radius: float = quantity(0.02, "m", "of the part", gt=0.0, le=1.0)
+    margin: float = quantity(0.0, "m", "left free at the other end, where the frame itself touches", ge=0.0, le=1.0)
+
+
 class PlannerConfig(Config):
     """How targets that jump become motion."""
 
+    kind: Literal["superposition", "attractor", "printed"] = Field(
+        default="superposition",
+        description="superposition: never leaves the hull of the targets; attractor: [HapFIC] eq. 2-3, corrected, which"
+        " haptic-paper always has; printed: the same as printed",
+    )
     speed: float = quantity(0.2, "m/s", "fastest motion of the target", ge=1e-4, le=100.0)
     acceleration: float = quantity(2.0, "m/s²", "largest acceleration of the target", ge=1e-4, le=1e4)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -10,7 +10,9 @@ from pliant.configuration import Config
 from pliant.errors import options
 from pliant.quantity import Range, quantity
 from pliant.robots.rotors import RotorInertia
+from pliant.tasks.draws import DrawnValue
 from pliant.tasks.estimation import Estimation
+from pliant.tasks.events import Event
 from pliant.tasks.limits import Limits
 from pliant.tasks.parts import (
     Disturbance,
@@ -24,12 +26,12 @@ from pliant.tasks.parts import (
     ToolConfig,
     TruthConfig,
 )
-from pliant.tasks.phase import Event, ImpedanceConfig, Phase, PlannerConfig, Thing
+from pliant.tasks.phase import ImpedanceConfig, Link, Phase, PlannerConfig, Thing
 from pliant.tasks.surface_config import SurfaceConfig
 
 FORMAT = 1
 _OF_A_PATH = {"surface": SurfaceConfig(), "path": PathConfig(), "force": Force(), "phases": Phases()}
-_OF_A_LIST = ("event", "scene", "moves", "start", "impedance", "landing", "timed")
+_OF_A_LIST = ("event", "scene", "links", "moves", "start", "impedance", "landing", "timed")
 _OF_THE_SURFACE = ("shift", "tilt", "axis", "stiffness", "damping", "friction")
 
 
@@ -45,6 +47,9 @@ class TaskParts(Config):
         None, "deg", "joint → angle at which it is fixed; none: those that the catalogue locks"
     )
     rotor_inertia: RotorInertia = None
+    mass_scale: tuple[Annotated[float, Field(ge=1e-3, le=1e3)], ...] | None = quantity(
+        None, "1", "factor on the mass and inertia of each joint's link, known to the controller; none: 1"
+    )
     tool: ToolConfig = ToolConfig()
     sensor: Sensor = Sensor()
     estimation: Estimation = Estimation()
@@ -56,6 +61,9 @@ class TaskParts(Config):
         default=(), description="an explicit list, in place of surface, path, force and phases"
     )
     scene: dict[str, Thing] = Field(default={}, description="name → thing that stands around, with [[phase]]")
+    links: dict[str, Link] = Field(
+        default={}, description="frame → part of the robot from there on that touches things, too, with [[phase]]"
+    )
     event: tuple[Event, ...] = Field(default=(), description="online changes, with [[phase]]")
     moves: str | None = Field(default=None, description="frame that targets and wrenches are for; none: the tool's")
     timed: bool = Field(
@@ -82,6 +90,11 @@ class TaskParts(Config):
     timing: TimingConfig = TimingConfig()
     limits: Limits = Limits()
     truth: TruthConfig = TruthConfig()
+    draw: dict[str, DrawnValue] = Field(
+        default={},
+        description="key of the task → how its value is drawn, one draw a seed, e.g. 'scene.floor.stiffness'; unlike"
+        " that of `truth` it is what is believed as well",
+    )
     disturbance: tuple[Disturbance, ...] = Field(default=(), description="pushes from outside")
     accept: dict[str, float] = Field(
         default={}, description="metric → bound that it must keep: force_error, force_peak, contact_lost, path_error, …"

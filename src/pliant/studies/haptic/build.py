@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
-import pinocchio as pin
-
 from pliant.entries import ControllerConfig
-from pliant.errors import ConfigError
+from pliant.experiments.model_error import with_masses
 from pliant.experiments.sensing import sensing_of
+from pliant.experiments.target_planner import target_planner
 from pliant.interfaces import Lookahead, Plant, ReferenceSource
-from pliant.references.planners.attractor_planner import AttractorPlanner
-from pliant.references.planners.harmonic_attractor import AttractorSettings
-from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
-from pliant.references.planners.superposition import MotionLimits
-from pliant.references.planners.workspace import workspace_of
 from pliant.robot import Robot
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, LinkCapsule, MujocoPlant
 from pliant.simulation.imperfections.actuation import ActuationConfig
@@ -61,12 +54,7 @@ def robot_of(config: HapticCaseConfig) -> Robot:
     robot = Robot.load(config.robot, locked=config.locked, rotor_inertia=config.rotor_inertia)
     if config.hardware.mass_scale is None:
         return robot
-    factors = robot.vector(config.hardware.mass_scale, "hardware.mass_scale")
-    model = robot.model.copy()
-    for joint, factor in enumerate(factors, start=1):
-        body = model.inertias[joint]
-        model.inertias[joint] = pin.Inertia(factor * body.mass, body.lever, factor * body.inertia)
-    return replace(robot, model=model)
+    return with_masses(robot, robot.vector(config.hardware.mass_scale, "hardware.mass_scale"))
 
 
 def planned(
@@ -78,21 +66,7 @@ def planned(
         ConfigError: a preview is wanted of the attractor planner, whose way depends on where the robot is.
     """
     wanted = schedule(config, parameters.whole_tuning() or config.exploration)
-    planner = config.planner
-    kind = planner.kind if planner.kind == "printed" else config.entry.planner or planner.kind
-    if kind != "superposition":
-        if lookahead is not None:
-            raise ConfigError(
-                f"controller {config.controller!r} wants a preview, which planner.kind = {kind!r} cannot give;"
-                " valid: 'superposition'"
-            )
-        # as printed, eq. 3 gets stuck or runs away and nothing else could be compared: the corrected reading
-        settings = AttractorSettings(planner.speed, planner.acceleration, printed=kind == "printed")
-        return AttractorPlanner(wanted, robot.placement, settings)
-    limits = PlannerLimits(linear=MotionLimits(planner.speed, planner.acceleration))
-    return HarmonicPlanner(
-        wanted, robot.placement, limits, {config.frame: workspace_of(robot, config.frame)}, lookahead
-    )
+    return target_planner(config.planner, config.entry, wanted, robot, config.frame, lookahead)
 
 
 def plant_of(config: HapticCaseConfig, robot: Robot) -> Plant[Any]:

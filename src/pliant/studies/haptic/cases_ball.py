@@ -2,23 +2,9 @@
 
 from __future__ import annotations
 
-from pliant.references.exploration.config import ExplorationConfig
-from pliant.studies.haptic.config import Check, HapticCaseConfig
+from pliant.studies.haptic.config import Check
+from pliant.studies.haptic.from_task import from_task
 from pliant.studies.haptic.rows import plain
-from pliant.studies.haptic.scene_config import BallConfig, Floor, HapticScene, Hardware, Material
-from pliant.studies.haptic.steps_config import FootImpedance, HapticPlannerConfig, Step
-
-_X = 0.12  # m, of the ball
-_Z = 0.21  # m: 10 mm below the foot's height when it touches the top
-_ABOVE = (0.0, 0.7489, -2.2459)  # rad: foot at x = 0.12 m, z = 0.26 m
-_FIXED = HapticScene(floor=None, ball=BallConfig(position=(_X, 0.0, 0.1), mass=0.0))
-_FREE = HapticScene(floor=Floor(material=Material()), ball=BallConfig(position=(_X, 0.0, 0.1)), shank=True)
-
-
-def _steps(forces: tuple[float, float, float]) -> tuple[Step, ...]:
-    """Down to the ball, then three forces, a second each."""
-    reach = Step(time=0.0, name="reach", target=(_X, 0.0, _Z))
-    return reach, *(Step(time=2.0 + i, name=f"{f:g} N", force=(0.0, 0.0, f)) for i, f in enumerate(forces))
 
 
 def _checks(forces: tuple[float, float, float], settle: tuple[float, float, float]) -> tuple[Check, ...]:
@@ -45,33 +31,16 @@ def _checks(forces: tuple[float, float, float], settle: tuple[float, float, floa
 
 _FORCES = (15.0, 25.0, 8.0)  # N
 
-BALL = HapticCaseConfig(
-    case="ball",
-    duration=5.0,
-    environment=_FIXED,
-    start=_ABOVE,
-    steps=_steps(_FORCES),
+BALL = from_task(
+    "ball",
     checks=_checks(_FORCES, (0.15, 0.15, 0.3)),
     snapshots=(0.0, 1.9, 3.9, 4.9),
 )
 
-_BRISK = ExplorationConfig(gain=60.0)  # 1/s: the estimated stiffness slows the regulation down where it rings
 _LIGHT = (8.0, 12.0, 5.0)  # N, on a ball that gives way above and below
 
-BALL_FREE = HapticCaseConfig(
-    case="ball-free",
-    duration=13.8,
-    environment=_FREE,
-    exploration=_BRISK,
-    start=_ABOVE,
-    steps=(
-        *_steps(_LIGHT),
-        Step(time=5.0, name="lift", target=(_X, 0.0, 0.27), force=(0.0, 0.0, 0.0)),
-        Step(time=5.8, name="over", target=(0.30, 0.0, 0.27)),
-        Step(time=7.3, name="kick", target=(0.30, 0.0, 0.08)),  # the shank comes down on the ball
-        Step(time=8.9, name="stretch", target=(0.44, 0.0, 0.06)),  # m, 13 mm beyond the straight leg
-        Step(time=10.4, name="return", target=(0.10, 0.0, 0.15)),
-    ),
+BALL_FREE = from_task(
+    "ball-free",
     checks=(
         *_checks(_LIGHT, (0.15, 0.15, 0.3)),
         Check(kind="link", name="peak force on the shank"),
@@ -85,16 +54,9 @@ BALL_FREE = HapticCaseConfig(
 
 _REACHABLE = 32.3  # N: (x_b + p) K_e K_0/(K_e + K_0) with p = 10 mm, K_e = 1e3 N/m, K_0 = 12e3 N/m
 
-BALL_UNREACHABLE = HapticCaseConfig(
-    case="ball-unreachable",
-    duration=4.0,
-    environment=_FIXED,
-    start=_ABOVE,
-    steps=(
-        Step(time=0.0, name="reach", target=(_X, 0.0, _Z), force=(0.0, 0.0, 8.0)),
-        Step(time=2.0, name="60 N", force=(0.0, 0.0, 60.0)),
-        Step(time=3.0, name="8 N", force=(0.0, 0.0, 8.0)),
-    ),
+BALL_UNREACHABLE = from_task(
+    "ball",
+    "ball-unreachable",
     checks=(
         Check(kind="unreachable", name="said to be unreachable, share of time", begin=2.5, end=3.0, target=1.0),
         Check(
@@ -113,32 +75,11 @@ BALL_UNREACHABLE = HapticCaseConfig(
 )
 
 # [HapFIC] sec. III, experiment 4
-_ACTUATOR = Hardware(joint_damping=11.46, bandwidth=20.0, peak_torque=40.0)
-_SOFTER = FootImpedance(stiffness=(6000.0, 6000.0, 6000.0), force_max=(150.0, 150.0, 150.0))
+BALL_ACTUATOR = from_task("ball", "ball-actuator", checks=_checks(_FORCES, (0.25, 0.2, 0.4)), snapshots=BALL.snapshots)
 
-BALL_ACTUATOR = BALL.model_copy(
-    update={
-        "case": "ball-actuator",
-        "hardware": _ACTUATOR,
-        "impedance": _SOFTER,
-        "exploration": _BRISK,
-        "checks": _checks(_FORCES, (0.25, 0.2, 0.4)),
-    }
-)
-
-FLOOR_ACTUATOR = HapticCaseConfig(
-    case="floor-actuator",
-    duration=7.5,
-    hardware=_ACTUATOR,
-    impedance=_SOFTER,
-    exploration=_BRISK,
-    planner=HapticPlannerConfig(speed=0.05),  # m/s: the joints' damping lets the foot lag behind by 9 mm at 0.2 m/s
-    start=(0.0, 0.5402, -1.2266),
-    steps=(
-        Step(time=0.0, name="reach", target=(0.08, 0.0, 0.017), force=(0.0, 0.0, 40.0)),
-        Step(time=2.5, name="slide", target=(0.14, 0.0, 0.017)),
-        Step(time=5.0, name="back", target=(0.08, 0.0, 0.017)),
-    ),
+FLOOR_ACTUATOR = from_task(
+    "floor",
+    "floor-actuator",
     checks=(
         Check(kind="rms", name="hold, rms", begin=1.5, end=2.5, wanted=40.0, target=0.05),
         Check(kind="rms", name="slide, rms", begin=2.5, wanted=40.0, target=0.3),

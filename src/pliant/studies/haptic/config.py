@@ -24,7 +24,8 @@ from pliant.quantity import quantity
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.robot import Robot
 from pliant.studies.haptic.scene_config import HapticScene, Hardware
-from pliant.studies.haptic.steps_config import FootImpedance, HapticPlannerConfig, OnlineChanges, Step
+from pliant.studies.haptic.steps_config import FootImpedance, OnlineChanges, Step
+from pliant.tasks.phase import PlannerConfig
 from pliant.wiring.recipes import HapticConfig as HapticRecipe
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
@@ -89,7 +90,7 @@ class HapticCaseConfig(CaseConfig):
     environment: HapticScene = HapticScene()
     impedance: FootImpedance = FootImpedance()
     exploration: ExplorationConfig = ExplorationConfig()
-    planner: HapticPlannerConfig = HapticPlannerConfig()
+    planner: PlannerConfig = PlannerConfig()
     hardware: Hardware = Hardware()
     control: dict[str, Any] = Field(
         default={}, description="changes to the controller's parameters beside `impedance` and `exploration`"

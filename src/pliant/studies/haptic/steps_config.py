@@ -1,8 +1,8 @@
-"""Typed configuration of what the user asks for in time: targets, forces, changes, and how jumps become motion."""
+"""Typed configuration of what the user asks for in time: targets, forces, changes."""
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -38,18 +38,6 @@ class FootImpedance(Config):
         except PliantError as error:
             raise ValueError(str(error)) from None
         return self
-
-
-class HapticPlannerConfig(Config):
-    """How targets that jump become motion."""
-
-    kind: Literal["superposition", "attractor", "printed"] = Field(
-        default="superposition",
-        description="superposition: never leaves the hull of the targets; attractor: [HapFIC] eq. 2-3, corrected, which"
-        " haptic-paper always has; printed: the same as printed",
-    )
-    speed: float = quantity(0.2, "m/s", "fastest motion of the target", ge=1e-4, le=100.0)
-    acceleration: float = quantity(2.0, "m/s²", "largest acceleration of the target", ge=1e-4, le=1e4)
 
 
 class Step(Config):

@@ -6,22 +6,23 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
-
-from pliant.controllers.profiles import linear_range
 from pliant.errors import ConfigError
+from pliant.experiments.drawn_events import tunings_drawn
 from pliant.experiments.model_error import with_mass_error
+from pliant.experiments.pushes import pushes_of
 from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Foreseen
 from pliant.references.postures.posture_source import PostureSource
 from pliant.references.retuned import Retuned, TuningChange
 from pliant.robot import Robot
-from pliant.signals import ImpedanceTuning
-from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Push, Scene, Surface, random_pushes, wall
+from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Push, Scene, Surface, wall
 from pliant.simulation.seeding import generator
-from pliant.studies.stack.config import StackCaseConfig, StackPath
+from pliant.studies.stack.config import GainChanges, StackCaseConfig, StackPath
 from pliant.studies.stack.placement import Placement, placed
+from pliant.tasks.draws import LogUniform, Uniform
+from pliant.tasks.events import Event, Scaled
+from pliant.tasks.parts import Disturbance
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
@@ -34,7 +35,6 @@ def build(config: StackCaseConfig) -> Experiment:
     Raises:
         PliantError: a robot, frame or parameter that does not fit.
     """
-    rng_pushes, rng_tuning = (np.random.default_rng(seed) for seed in np.random.SeedSequence(config.seed).spawn(2))
     tool, elbow = config.frames()
     place, source = _placed(config)
     robot = config.robot_model().with_contact(tool, TOUCH_RADIUS)
@@ -51,10 +51,10 @@ def build(config: StackCaseConfig) -> Experiment:
             start=source.start,
             joints=JointEffects(config.joints.friction, config.joints.damping, config.joints.compensation),
             sensors=[ForceSensor(tool)] if felt else [],
-            pushes=_pushes(config, rng_pushes),
+            pushes=_pushes(config),
             observe=[tool, elbow],
         ),
-        source=lambda lookahead: _changed(_foreseen(source, lookahead), config, rng_tuning),
+        source=lambda lookahead: _changed(_foreseen(source, lookahead), config),
         sensing=sensing_of(
             config.estimation, felt=False, velocity_gain=config.joints.velocity_filter, joint_memory=0.0
         ),
@@ -68,8 +68,8 @@ def _foreseen(source: PostureSource, lookahead: Lookahead | None) -> ReferenceSo
     return source if lookahead is None else Foreseen(source, lookahead)
 
 
-def _changed(source: ReferenceSource[Any], config: StackCaseConfig, rng: np.random.Generator) -> ReferenceSource[Any]:
-    return source if config.retuning is None else Retuned(source, _schedule(config, rng))
+def _changed(source: ReferenceSource[Any], config: StackCaseConfig) -> ReferenceSource[Any]:
+    return source if config.retuning is None else Retuned(source, _schedule(config, config.retuning))
 
 
 def place_of(config: StackCaseConfig) -> Placement:
@@ -101,37 +101,31 @@ def _scene(config: StackCaseConfig, place: Placement) -> Scene:
     return Scene((wall((x, y, z), (nx, ny, nz), surface=surface),))
 
 
-def _pushes(config: StackCaseConfig, rng: np.random.Generator) -> tuple[Push, ...]:
+def _pushes(config: StackCaseConfig) -> tuple[Push, ...]:
     if config.pushes is None:
         return ()
-    return random_pushes(
-        rng,
-        config.pushes.frame,
-        config.duration if config.path.kind != "hold" else 0.6 * config.duration,
+    pushes = config.pushes
+    disturbance = Disturbance(
+        frame=pushes.frame,
+        push=Uniform(uniform=pushes.force),
         start=config.path.ramp,
-        force=config.pushes.force,
-        duration=config.pushes.duration,
-        gap=config.pushes.gap,
+        duration=Uniform(uniform=pushes.duration),
+        gap=Uniform(uniform=pushes.gap),
+        end=pushes.end,
     )
+    return pushes_of([disturbance], config.seed, config.duration)
 
 
-def _schedule(config: StackCaseConfig, rng: np.random.Generator) -> list[TuningChange]:
+def _schedule(config: StackCaseConfig, changes: GainChanges) -> list[TuningChange]:
     """Random factors on stiffness and force of each axis, a few times a second."""
     tunings = config.parameters().impedances()
-    if config.retuning is None or not tunings:
+    if not tunings:
         raise ConfigError(f"only impedances can be retuned, controller {config.controller!r} has none")
-    low, high = np.log(config.retuning.factor)
-    changes: list[TuningChange] = []
-    for time in np.arange(config.path.ramp, config.duration, 1.0 / config.retuning.rate):
-        for frame, now in tunings.items():
-            factor = np.exp(rng.uniform(low, high, (2, now.axes)))
-            stiffness, bend, reach = now.stiffness * factor[0], now.linear_range, now.range
-            if config.retuning.ranges:
-                wider = np.exp(rng.uniform(low, high, (2, now.axes)))
-                reach = reach * wider[1]
-                bend = np.minimum(linear_range(now) * wider[0], 0.95 * reach)
-            straight = linear_range(now) if bend is None else bend
-            bound = np.maximum(now.force_max * factor[1], stiffness * straight)
-            tuning = ImpedanceTuning(stiffness, bound, reach, bend)
-            changes.append(TuningChange(float(time), frame, tuning))
-    return changes
+    names: tuple[Scaled, ...] = ("stiffness", "force_max", "range", "linear_range")
+    scaled = names if changes.ranges else names[:2]
+    event = Event(
+        time=config.path.ramp,
+        every=1.0 / changes.rate,
+        factor={name: LogUniform(log_uniform=changes.factor) for name in scaled},
+    )
+    return tunings_drawn([event], tunings, config.seed, config.duration)

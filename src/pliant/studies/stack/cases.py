@@ -71,7 +71,7 @@ def _elbow(force: float) -> Row:
 _WALL = StackCaseConfig(case="figure8-wall", wall=Wall(), joints=_GAZEBO)
 _FRICTION = StackCaseConfig(case="figure8-gazebo", joints=_GAZEBO)
 _LATE = StackCaseConfig(case="figure8-hardware", **_HARDWARE_LOOP)
-_RESTING = RandomPushes(frame="flange", gap=(0.5, 0.6))
+_RESTING = RandomPushes(frame="flange", gap=(0.5, 0.6), end=6.0)
 
 # The paper's numbers: [Stack] sec. IV, mm; those of hardware, pushed and line were measured on its robot.
 _ALL = (

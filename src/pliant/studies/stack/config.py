@@ -78,6 +78,7 @@ class RandomPushes(Config):
     force: Annotated[tuple[_Force, _Force], AfterValidator(in_order)] = quantity((10.0, 30.0), "N", "least and most")
     duration: Span = quantity((0.2, 0.6), "s", "of a push, least and most")
     gap: Span = quantity((0.1, 0.4), "s", "between two pushes, least and most")
+    end: float | None = quantity(None, "s", "from which on no push begins; none: the end of the run", gt=0.0)
 
 
 class GainChanges(Config):

@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from pliant.entries import Believed, ControllerConfig
+from pliant.entries import Believed
 from pliant.errors import ConfigError
 from pliant.experiments.model_error import with_mass_error
+from pliant.experiments.pushes import pushes_of
 from pliant.experiments.sensing import sensing_of
-from pliant.interfaces import Lookahead, Plant, ReferenceSource
-from pliant.references.foreseen import Foreseen
-from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
-from pliant.references.planners.superposition import MotionLimits
-from pliant.references.planners.workspace import workspace_of
-from pliant.references.postures.posture_source import PostureSource
-from pliant.references.stages import Ending, Stage, Stages
-from pliant.robot import Robot
+from pliant.interfaces import Plant
+from pliant.references.stages import Stage
 from pliant.signals import ImpedanceTuning
-from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, MujocoPlant
+from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, LinkCapsule, MujocoPlant
 from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.seeding import generator
-from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.landing import GentleLanding, landed, landings, too_slow
+from pliant.studies.task.landing import landings, too_slow
 from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
+from pliant.studies.task.list_motion import Listed, source_of
 from pliant.studies.task.listed import (
     changes_of,
     frame_of,
@@ -42,9 +37,9 @@ from pliant.studies.task.listed import (
 from pliant.studies.task.pressed import asked_of, axes_of, beside_the_axes, pressed_planes, silent_axes
 from pliant.studies.task.sensor import known_load, sensor_of
 from pliant.studies.task.start import start_of
-from pliant.studies.task.timed import level, refuse_untimed, timed_source, touching
+from pliant.studies.task.timed import level, refuse_untimed, touching
 from pliant.studies.task.tracked import tracked_motion
-from pliant.studies.task.world import drawn_tool_mass, imperfections_of, pushes_of
+from pliant.studies.task.world import drawn_tool_mass, imperfections_of, inner_period
 from pliant.surfaces import SurfaceGeometry
 from pliant.telemetry.schema import Channel
 from pliant.wiring.estimators import Load
@@ -52,29 +47,12 @@ from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
 
-@dataclass(frozen=True)
-class Listed:
-    """What is known of a list before it runs."""
-
-    robot: Robot
-    believed: Believed
-    parameters: ControllerConfig
-    start: Array
-    """(n,) rad"""
-    duration: float
-    """s"""
-    tracked: PostureSource | None
-    """where frames are tracked"""
-    landings: Mapping[str, GentleLanding] = field(default_factory=dict[str, GentleLanding])
-    """phase → how it comes down to what it touches, where the file does not say it"""
-
-
 def listed(case: TaskCase) -> Listed:
     """Robot, belief and parameters of a run. Raises PliantError for what cannot be run."""
     refuse_untimed(case)
     robot, tracking = robot_of_list(case), tracks_of(case)
-    if case.event and tracking:
-        raise ConfigError("events change targets, wrenches and impedances of phases with a target; this one tracks")
+    if tracking and any(one.change or one.file for one in case.event):
+        raise ConfigError("events that change targets or wrenches need phases with a target; tracks take factor alone")
     if tracking:
         frames = tuple(case.phase[0].tracks)
         source = tracked_motion(case)
@@ -146,7 +124,7 @@ def build_list(case: TaskCase) -> Experiment:
         model=with_mass_error(made.robot, case.truth.link_masses, generator(case.seed, "model.masses")),
         believed=made.believed,
         plant=lambda felt: _plant(case, made, felt),
-        source=lambda lookahead: _source(case, made, lookahead),
+        source=lambda lookahead: source_of(case, made, lookahead),
         sensing=sensing_of(
             case.estimation,
             felt=not tracking,
@@ -188,50 +166,25 @@ def _believed(
     )
 
 
-def _source(case: TaskCase, made: Listed, lookahead: Lookahead | None) -> ReferenceSource[Any]:
-    if made.tracked is not None:
-        return made.tracked if lookahead is None else Foreseen(made.tracked, lookahead)
-    if case.timed:
-        return timed_source(case, made.robot, made.start, lookahead)
-    return planner_of(case, made, lookahead)
-
-
-def planner_of(
-    case: TaskCase, made: Listed, lookahead: Lookahead | None = None, in_time: bool = False
-) -> HarmonicPlanner:
-    """Motion through the targets. Args: in_time: each phase lasts as long as it may, whatever is felt, and
-    no target is brought back into reach."""
-    robot, frame = made.robot, frame_of(case)
-    stages = landed(case, stages_of(case, robot, robot.placement(made.start, frame)[1]), made.landings)
-    if in_time:
-        both = zip(stages, case.phase, strict=True)
-        stages = tuple(replace(stage, endings=(Ending(phase.longest),)) for stage, phase in both)
-    tuning = made.parameters.impedances().get(frame, made.believed.tunings.get(frame))
-    wanted = Stages(robot, stages, tuning, made.parameters.whole_tuning(), changes_of(case))
-    limits = PlannerLimits(linear=MotionLimits(case.planner.speed, case.planner.acceleration))
-    workspaces = {} if in_time else {frame: workspace_of(robot, frame)}
-    return HarmonicPlanner(wanted, robot.placement, limits, workspaces, lookahead)
-
-
 def _plant(case: TaskCase, made: Listed, felt: bool) -> Plant[Any]:
     """The robot among its things, with its imperfections where there are any."""
     imperfections, frames = imperfections_of(case), made.believed.frames
-    perfect = imperfections == Imperfections()
     heavier = drawn_tool_mass(case)
     truth = case.truth
     plant = MujocoPlant(
         robot_of_list(case, heavier) if heavier else made.robot,
         scene_of(case),
-        period=case.simulation.period if perfect else case.simulation.physics_step,
+        period=inner_period(case),
         physics_step=case.simulation.physics_step,
         start=made.start,
         joints=JointEffects(truth.joint_friction, truth.joint_damping, case.compensates),
         sensors=[_sensor(case, frames[0], heavier)] if felt or case.limits.force is not None else [],
-        pushes=pushes_of(case, made.duration),
+        pushes=pushes_of(case.disturbance, case.seed, made.duration),
+        links=[LinkCapsule(name, one.to, one.radius, one.margin) for name, one in case.links.items()],
         observe=list(frames),
         speed_stop=SPEED_STOP if case.timed else None,
     )
-    if perfect:
+    if imperfections == Imperfections():
         return plant
     robot = made.robot
     weight = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), made.start))

@@ -13,9 +13,11 @@ from pliant.references.reach.course import Course, course_of, course_through, in
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import Array
 from pliant.studies.task.build import refuse_path
-from pliant.studies.task.build_list import Listed, listed, planner_of
+from pliant.studies.task.build_list import listed
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.drawn_case import as_drawn
 from pliant.studies.task.geometry import force_of, laid_out
+from pliant.studies.task.list_motion import Listed, planner_in_time
 from pliant.studies.task.timed import timed_source
 from pliant.studies.task.world import true_surface
 
@@ -28,11 +30,12 @@ def checked_path(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
     Raises:
         PliantError: a robot, frame or path that there is not.
     """
+    runs, case = _seeds(case, drawn), as_drawn(case)
     robot, surface, path = laid_out(case, case.robot)
     refuse_path(case, path)
     phases = case.phases
     course = course_of(path, force_of(case), phases.stand_off, phases.approach_speed, phases.leave)
-    true = [true_surface(one, surface, path).geometry for one in _seeds(case, drawn)]
+    true = [true_surface(one, surface, path).geometry for one in runs]
     return check_reach(
         robot,
         case.tool.frame,
@@ -50,19 +53,20 @@ def checked_list(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
     Raises:
         PliantError: what cannot be run.
     """
+    runs, case = _seeds(case, drawn if case.event or case.draw else 0), as_drawn(case)
     made = listed(case)
     return check_reach(
         made.robot,
         made.believed.frames[0],
         _course(case),
-        [partial(_course, one) for one in _seeds(case, drawn if case.event else 0)],
+        [partial(_course, one) for one in runs],
         nominal=made.start,
         solved=None if made.tracked is None else made.tracked.path,
     )
 
 
 def _seeds(case: TaskCase, drawn: int) -> list[TaskCase]:
-    return [case.model_copy(update={"seed": case.seed + index}) for index in range(drawn)]
+    return [as_drawn(case.model_copy(update={"seed": case.seed + index})) for index in range(drawn)]
 
 
 def _course(case: TaskCase) -> Course:
@@ -73,7 +77,7 @@ def _course(case: TaskCase) -> Course:
         return course_through([made.tracked.at(time, time) for time in times.tolist()])
     if case.timed:
         return _timed_course(case, made, times)
-    planner, nothing = planner_of(case, made, in_time=True), np.zeros(made.robot.n)
+    planner, nothing = planner_in_time(case, made), np.zeros(made.robot.n)
     estimate = Estimate(0.0, made.start, nothing, nothing, nothing)
     goal, _ = planner.inner.step(estimate, planner.inner.init(estimate))
     _, state = planner.step(estimate, planner.init(estimate))

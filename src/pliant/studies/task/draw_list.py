@@ -11,8 +11,8 @@ from pliant.experiments.base import Experiment
 from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
-from pliant.studies.task.build_list import Listed
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.list_motion import Listed
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
 from pliant.telemetry.plots.pictures import picture_row

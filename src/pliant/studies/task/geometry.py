@@ -9,6 +9,7 @@ from pathlib import Path as FilePath
 import numpy as np
 
 from pliant.errors import ConfigError
+from pliant.experiments.model_error import with_masses
 from pliant.references.postures.inverse_kinematics import Target, joint_box
 from pliant.references.postures.posture import freedom, mink_solver
 from pliant.references.toolpaths.files import read_path
@@ -39,7 +40,12 @@ def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
     made = task.tool.tool(unknown_mass)
     locked = None if task.locked is None else {joint: math.radians(angle) for joint, angle in task.locked.items()}
     arm = Robot.load(source, locked=locked, tool=made, rotor_inertia=task.rotor_inertia)
-    return arm.touching_with(made)
+    return weighed(task, arm.touching_with(made))
+
+
+def weighed(task: TaskParts, robot: Robot) -> Robot:
+    """The robot with its links as heavy as the task says."""
+    return robot if task.mass_scale is None else with_masses(robot, robot.vector(task.mass_scale, "mass_scale"))
 
 
 def laid_out(task: TaskParts, source: str) -> tuple[Robot, SurfaceGeometry, Toolpath]:

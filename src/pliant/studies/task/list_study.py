@@ -11,6 +11,7 @@ from pliant.studies.task.build_list import build_list, listed
 from pliant.studies.task.check import CHECKED_DRAWS, checked_list
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.draw_list import list_figures
+from pliant.studies.task.drawn_case import as_drawn
 from pliant.studies.task.landing import suggested_landings, told_landing
 from pliant.studies.task.measure_list import check_accept_of_list, measured_list
 from pliant.studies.task.search import Searched
@@ -24,27 +25,31 @@ class ListStudy(TaskStudy):
 
     def build(self, config: TaskCase) -> Experiment:
         check_accept_of_list(config)
-        return build_list(config)
+        return build_list(as_drawn(config))
 
     def metrics(self, config: TaskCase, log: Log) -> tuple[Metric, ...]:
-        return measured_list(config, listed(config), log)
+        run = as_drawn(config)
+        return measured_list(run, listed(run), log)
 
     def searched(self, config: TaskCase) -> Searched:
-        made = listed(config)
+        made = listed(as_drawn(config))
         return Searched(made.robot, made.believed)
 
     def suggested(self, config: TaskCase) -> Mapping[str, tuple[float, str]]:
-        return suggested_landings(config, listed(config).landings)
+        run = as_drawn(config)
+        return suggested_landings(run, listed(run).landings)
 
     def about(self, config: TaskCase) -> Mapping[str, str]:
-        told = [told_landing(config, name, one) for name, one in listed(config).landings.items()]
+        run = as_drawn(config)
+        told = [told_landing(run, name, one) for name, one in listed(run).landings.items()]
         return {"landing": "; ".join(told)} if told else {}
 
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         return checked_list(config, drawn)
 
     def figures(self, config: TaskCase, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
-        return list_figures(config, listed(config), experiment, log, folder)
+        run = as_drawn(config)
+        return list_figures(run, listed(run), experiment, log, folder)
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         return []

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from pliant.errors import ConfigError, options
+from pliant.experiments.drawn_events import changes_drawn
 from pliant.references.stages import Ending, Stage, StageChange
 from pliant.robot import Robot
 from pliant.signals import TaskReference
 from pliant.simulation import Ball, Box, Plane, Scene
 from pliant.simulation import Surface as Touch
 from pliant.simulation.scene import Thing, fixed_part
-from pliant.simulation.seeding import generator
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.geometry import robot_of, weighed
 from pliant.studies.task.phase_axes import axes_of_phases, axis_modes, check_axes
 from pliant.studies.task.pressed import with_axes
 from pliant.surfaces import EdgeSurface, HoleSurface
-from pliant.tasks.draws import drawn
-from pliant.tasks.phase import Condition, Event, PerAxis
+from pliant.tasks.phase import Condition, PerAxis
 from pliant.tasks.phase import Thing as Described
 
 _DRAWN = 4.0  # radii of a hole, half of the face that is drawn round it
@@ -47,14 +48,11 @@ def frame_of(case: TaskCase) -> str:
 
 def robot_of_list(case: TaskCase, unknown_mass: float = 0.0) -> Robot:
     """The robot, with the tool where the task moves the tool's frame. Args: unknown_mass: kg of the real tool."""
-    tool = case.tool
     driven = [frame for one in case.phase for frame in one.tracks] or [frame_of(case)]
+    if case.tool.frame in driven:
+        return robot_of(case, case.robot, unknown_mass)
     locked = None if case.locked is None else {joint: math.radians(angle) for joint, angle in case.locked.items()}
-    if tool.frame not in driven:
-        return Robot.load(case.robot, locked=locked, rotor_inertia=case.rotor_inertia)
-    made = tool.tool(unknown_mass)
-    arm = Robot.load(case.robot, locked=locked, tool=made, rotor_inertia=case.rotor_inertia)
-    return arm.touching_with(made)
+    return weighed(case, Robot.load(case.robot, locked=locked, rotor_inertia=case.rotor_inertia))
 
 
 def scene_of(case: TaskCase) -> Scene:
@@ -111,10 +109,12 @@ def longest_of(case: TaskCase) -> float:
 
 
 def changes_of(case: TaskCase) -> tuple[StageChange, ...]:
-    """The events, at times that the seed draws. Raises ConfigError for something that no event can change."""
+    """The events, as the seed draws them. Raises ConfigError for something that no event can change."""
+    until = min(case.duration, longest_of(case))
     return tuple(
-        _change(case, index, one, drawn(one.time, generator(case.seed, f"event.{index}")))
+        _change(case, index, change, time)
         for index, one in enumerate(case.event, start=1)
+        for time, change in changes_drawn(index, one, case.seed, until)
     )
 
 
@@ -129,11 +129,11 @@ def _ending(condition: Condition, otherwise: str) -> Ending:
     return Ending(condition.duration or 0.0, condition.contact, condition.force, condition.depth, condition.reached)
 
 
-def _change(case: TaskCase, index: int, event: Event, time: float) -> StageChange:
+def _change(case: TaskCase, index: int, change: Mapping[str, Any], time: float) -> StageChange:
     target, wrench = None, None
     tuning: dict[str, Array] = {}
     whole: dict[str, Any] = {}
-    for key, value in event.change.items():
+    for key, value in change.items():
         parts = key.split(".")
         name = parts[-1]
         if len(parts) == 3 and parts[0] == "controller" and parts[1] != case.controller:

@@ -7,8 +7,8 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError, options
 from pliant.spatial import Array
-from pliant.studies.task.build_list import Listed
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.list_motion import Listed
 from pliant.studies.task.listed import frame_of, stages_of, tracks_of
 from pliant.tasks.phase import Track
 from pliant.telemetry import metrics as of

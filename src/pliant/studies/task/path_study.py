@@ -11,6 +11,7 @@ from pliant.studies.task import draw
 from pliant.studies.task.build import build, planned
 from pliant.studies.task.check import CHECKED_DRAWS, checked_path
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.drawn_case import as_drawn
 from pliant.studies.task.measure import WORST, TaskSignals, check_accept, measured, signals_of
 from pliant.studies.task.search import Searched
 from pliant.studies.task.task_study import TaskStudy
@@ -27,7 +28,7 @@ class PathStudy(TaskStudy):
 
     def build(self, config: TaskCase) -> Experiment:
         check_accept(config.accept)
-        return build(config)
+        return build(as_drawn(config))
 
     def metrics(self, config: TaskCase, log: Log) -> tuple[Metric, ...]:
         return measured(self._signals(config, log), config.accept)
@@ -38,6 +39,7 @@ class PathStudy(TaskStudy):
         return None
 
     def searched(self, config: TaskCase) -> Searched:
+        config = as_drawn(config)
         made = planned(config)
         return Searched(made.robot, config.believed(made.surface))
 
@@ -49,12 +51,13 @@ class PathStudy(TaskStudy):
         return checked_path(config, drawn)
 
     def figures(self, config: TaskCase, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
-        return draw.run_figures(config, experiment, log, self._signals(config, log), folder)
+        return draw.run_figures(as_drawn(config), experiment, log, self._signals(config, log), folder)
 
     def summary_figures(self, results: Sequence[Result], folder: Path) -> list[Path]:
         return draw.comparison(results, folder)
 
     def _signals(self, config: TaskCase, log: Log) -> TaskSignals:
+        config = as_drawn(config)
         made = planned(config)
         surface = true_surface(config, made.surface, made.path)
         return signals_of(log, config.tool.frame, surface.geometry, made.robot.torque_limit)

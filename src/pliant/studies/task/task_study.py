@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 from pliant.configuration import merged
 from pliant.dotted import nested
@@ -44,9 +44,11 @@ class TaskStudy(Study[TaskCase]):
         rows: list[Row] = []
         for values in itertools.product(*sweep.values()):
             changes: dict[str, Any] = {}
+            named: list[str] = []
             for key, value in zip(sweep, values, strict=True):
-                changes = overlaid(None, changes, nested({key: value}))
-            named = [f"{key} {value}" for key, value in zip(sweep, values, strict=True) if key != "controller"]
+                label, own = _of_a_value(key, value)
+                changes = overlaid(None, changes, own)
+                named += [] if key == "controller" else [f"{key} {label}"]
             controller = changes.pop("controller", None)
             rows.append(Row(", ".join(named), controller, changes))
         return rows
@@ -73,6 +75,19 @@ class TaskStudy(Study[TaskCase]):
         Raises:
             PliantError: a robot, frame or path that there is not.
         """
+
+
+def _of_a_value(key: str, value: Any) -> tuple[str, dict[str, Any]]:
+    """What a value of a sweep is called and what it changes: its key, or all that a table says beside its label."""
+    if not isinstance(value, Mapping):
+        return str(value), nested({key: value})
+    changes = dict(cast("Mapping[str, Any]", value))
+    label = changes.pop("label", None)
+    if not isinstance(label, str) or not changes:
+        raise ConfigError(
+            f"sweep.{key}: a table that changes several values has a label: {{ label = 'soft', … }}, got {value!r}"
+        )
+    return label, nested(changes)
 
 
 def _draws(base: TaskCase, seeds: int | None) -> Sequence[Mapping[str, Any]]:

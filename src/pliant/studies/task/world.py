@@ -11,10 +11,11 @@ import pinocchio as pin
 
 from pliant.configuration import merged
 from pliant.errors import ConfigError, options
+from pliant.experiments.pushes import pushes_of
 from pliant.interfaces import Plant
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
-from pliant.simulation import Imperfections, ImperfectPlant, JointEffects, MujocoPlant, Push, Scene
+from pliant.simulation import Imperfections, ImperfectPlant, JointEffects, MujocoPlant, Scene
 from pliant.simulation import Surface as Touch
 from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.scene import fixed_part
@@ -25,14 +26,12 @@ from pliant.studies.task.geometry import robot_of
 from pliant.studies.task.sensor import sensor_of
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.draws import Drawn, drawn
-from pliant.tasks.parts import Disturbance, Vector
 
 _IMPERFECTIONS = {
     "none": Imperfections(),
     "p3": Imperfections.p3(),
     "p3-without-torque-loop": Imperfections.p3(pid=False),
 }
-_SHORTEST = 1e-3  # s, of a push: a normal distribution has no least value
 
 
 @dataclass(frozen=True)
@@ -68,6 +67,8 @@ def imperfections_of(case: TaskCase) -> Imperfections:
     if base not in _IMPERFECTIONS:
         raise ConfigError(f"truth.imperfections.base: {options(_IMPERFECTIONS, str(base))}, got {base!r}")
     found = merged(_IMPERFECTIONS[base], changes)
+    if found == Imperfections():
+        return found  # damped joints are the plant's own
     damping = case.truth.joint_damping
     return found.model_copy(update={"joint_damping": damping}) if damping else found
 
@@ -76,52 +77,31 @@ def plant_of(case: TaskCase, robot: Robot, surface: TrueSurface, start: Array, s
     """The robot over the part, with its imperfections where there are any."""
     tool = case.tool.frame
     imperfections = imperfections_of(case)
-    perfect = imperfections == Imperfections()
     heavier = drawn_tool_mass(case)
     physics = MujocoPlant(
         robot_of(case, case.robot, heavier) if heavier else robot,
         Scene((fixed_part("part", surface.geometry, surface.touch),), case.simulation.contact),
-        period=case.simulation.period if perfect else case.simulation.physics_step,
+        period=inner_period(case),
         physics_step=case.simulation.physics_step,
         start=start,
         joints=JointEffects(case.truth.joint_friction, case.truth.joint_damping, case.compensates),
         sensors=[sensor_of(case, heavier)],
-        pushes=pushes_of(case, seconds),
+        pushes=pushes_of(case.disturbance, case.seed, seconds),
         observe=[tool],
         speed_stop=SPEED_STOP,
     )
-    if perfect:
+    if imperfections == Imperfections():
         return physics
     weight = np.array(pin.computeGeneralizedGravity(robot.model, robot.model.createData(), start))
     holding = weight if case.compensates == "none" else np.zeros(robot.n)
     return ImperfectPlant(physics, imperfections, seed=case.seed, period=case.simulation.period, holding_torque=holding)
 
 
-def pushes_of(case: TaskCase, seconds: float) -> tuple[Push, ...]:
-    """From outside, as the seed draws them. Args: seconds: that the run takes at most."""
-    found: list[Push] = []
-    rng = generator(case.seed, "pushes")
-    for one in case.disturbance:
-        time = one.start
-        while time < seconds:
-            time += 0.0 if one.gap is None else drawn(one.gap, rng)
-            force, duration = _push(one, rng), max(drawn(one.duration, rng), _SHORTEST)
-            if time < seconds:
-                found.append(Push(one.frame, force, time, duration))
-            time = math.inf if one.gap is None else time + duration
-    return tuple(found)
-
-
-def _push(one: Disturbance, rng: np.random.Generator) -> Vector:
-    if isinstance(one.push, tuple):
-        return one.push
-    if one.direction == "level":
-        angle = float(rng.uniform(0.0, 2.0 * math.pi))
-        way = np.array([math.cos(angle), math.sin(angle), 0.0])
-    else:
-        way = unit(rng.standard_normal(3), "a direction")
-    x, y, z = (float(entry) for entry in drawn(one.push, rng) * way)
-    return x, y, z
+def inner_period(case: TaskCase) -> float:
+    """s: a perfect robot is stepped once a control period; drives and gears act inside of it."""
+    if imperfections_of(case) == Imperfections():
+        return case.simulation.period
+    return case.simulation.drive_step or case.simulation.physics_step
 
 
 def drawn_tool_mass(case: TaskCase) -> float:
