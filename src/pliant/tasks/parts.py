@@ -16,6 +16,7 @@ from pliant.references.toolpaths.toolpath import PathMotion
 from pliant.robots.tool import Tool, ToolShape
 from pliant.spatial import Array, rpy
 from pliant.tasks.draws import Drawn, bounds
+from pliant.tasks.thing_truth import ThingTruth
 
 Vector = tuple[float, float, float]
 _USUAL = SurfaceTaskSettings()
@@ -194,6 +195,9 @@ class TruthConfig(Config):
     stiffness: Drawn | None = quantity(None, "N/m", "none: as believed")
     damping: Drawn | None = quantity(None, "N·s/m", "none: as believed")
     friction: Drawn | None = quantity(None, "1", "none: as believed")
+    things: dict[str, ThingTruth] = Field(
+        default={}, description="name of a thing of the scene → how it differs, with [[phase]]"
+    )
     tool_mass: Drawn = quantity(0.0, "kg", "of the tool beside what is known")
     link_masses: float = quantity(0.0, "1", "share by which each link's mass is off, drawn within ±", ge=0.0, lt=1.0)
     joint_friction: float = quantity(0.0, "N·m", "dry friction of each joint", ge=0.0, le=1e4)

@@ -119,6 +119,7 @@ class TaskParts(Config):
     def _is_of_one_kind(self) -> TaskParts:
         if not self.phase:
             said = [name for name in _OF_A_LIST if getattr(self, name) != type(self).model_fields[name].default]
+            said += ["truth.things"] if self.truth.things else []
             if said:
                 raise ValueError(f"{said[0]} belongs to a task of [[phase]]; this one has a path on a surface")
             return self

@@ -21,6 +21,7 @@ from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import robot_of, weighed
 from pliant.studies.task.phase_axes import axes_of_phases, axis_modes, check_axes
 from pliant.studies.task.pressed import with_axes
+from pliant.studies.task.true_scene import true_scene
 from pliant.surfaces import EdgeSurface, HoleSurface
 from pliant.tasks.phase import Condition, PerAxis
 from pliant.tasks.phase import Thing as Described
@@ -56,8 +57,8 @@ def robot_of_list(case: TaskCase, unknown_mass: float = 0.0) -> Robot:
 
 
 def scene_of(case: TaskCase) -> Scene:
-    """Everything that stands around."""
-    return Scene(tuple(_thing(name, one) for name, one in case.scene.items()), contact=case.simulation.contact)
+    """Everything that stands around, where and as it really is."""
+    return Scene(tuple(_thing(name, one) for name, one in true_scene(case).items()), contact=case.simulation.contact)
 
 
 def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...]:

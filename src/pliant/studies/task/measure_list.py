@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, options
+from pliant.signals import TaskReference
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.list_motion import Listed
@@ -19,13 +20,18 @@ from pliant.telemetry.summary import Metric
 _AFTER_THE_RAMP = 1.0  # s
 _TRACKING = ("rmse_x", "rmse_y", "rmse_z", "torque_variation", "torque_step", "torque_share")
 _OF_A_PHASE = {"force_rms": "N", "force_max": "N", "contact_breaks": "", "position_max": "mm"}
+_ON_SILENT_AXES = ("side_force_max", "side_moment_max")
 
 
 def names_of(case: TaskCase) -> tuple[str, ...]:
     """Of all metrics, as `accept` can bound them."""
     if tracks_of(case):
         return _TRACKING
-    return (*(f"{phase}/{name}" for phase in case.phase_names() for name in _OF_A_PHASE), "force_peak", "torque_share")
+    return (
+        *(f"{phase}/{name}" for phase in case.phase_names() for name in (*_OF_A_PHASE, *_ON_SILENT_AXES)),
+        "force_peak",
+        "torque_share",
+    )
 
 
 def check_accept_of_list(case: TaskCase) -> None:
@@ -63,7 +69,8 @@ def _tracking(case: TaskCase, made: Listed, log: Log) -> dict[str, tuple[float, 
 def _pressing(case: TaskCase, made: Listed, log: Log) -> dict[str, tuple[float, str]]:
     """Along each phase's wrench as the reference has it, events included; from `settle` after its beginning."""
     frame = frame_of(case)
-    time, force = log.time("measurement/q"), log[f"truth/{frame}/wrench"][:, :3]
+    time, whole = log.time("measurement/q"), log[f"truth/{frame}/wrench"]
+    force = whole[:, :3]
     wanted, beside = log[f"reference/{frame}/wrench"][:, :3], log[f"truth/{frame}/position"]
     off = np.linalg.norm(beside - log[f"reference/{frame}/position"], axis=1)
     stages = stages_of(case, made.robot, np.eye(3))
@@ -79,8 +86,27 @@ def _pressing(case: TaskCase, made: Listed, log: Log) -> dict[str, tuple[float, 
             found[f"{stage.name}/force_rms"] = (of.rms_error(felt, asked), "N")
             found[f"{stage.name}/force_max"] = (of.max_error(felt, asked), "N")
             found[f"{stage.name}/contact_breaks"] = (float(contact_breaks(felt)), "")
+        found |= {f"{stage.name}/{name}": value for name, value in on_silent_axes(stage.task, whole[inside]).items()}
         found[f"{stage.name}/position_max"] = (1e3 * float(off[inside].max()), "mm")
     found["force_peak"] = (of.peak(np.linalg.norm(force, axis=1)), "N")
+    return found
+
+
+def on_silent_axes(task: TaskReference, wrench: Array) -> dict[str, tuple[float, str]]:
+    """Largest force and moment along the axes on which a task asks for 0 N or 0 N·m; empty without one.
+
+    Args:
+        task: with its modes.
+        wrench: (k, 6) N and N·m, world axes.
+    """
+    if task.modes is None:
+        return {}
+    asked, found = task.modes.into(task.wrench), dict[str, tuple[float, str]]()
+    silent = np.array(task.modes.having("force")) & (np.abs(asked) < 1e-9)
+    for begin, name, unit in ((0, _ON_SILENT_AXES[0], "N"), (3, _ON_SILENT_AXES[1], "N·m")):
+        axes = task.modes.rotation[:, silent[begin : begin + 3]]
+        if axes.size:
+            found[name] = (of.peak(np.linalg.norm(wrench[:, begin : begin + 3] @ axes, axis=1)), unit)
     return found
 
 
