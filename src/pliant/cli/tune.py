@@ -78,6 +78,7 @@ def _finish(
     write_text(toml, _toml(sought, made, best, about))
     figure = _draw(sought, made, about, folder / "trials.png")
     console.print(_start_and_best(sought, made, best, about))
+    console.print(compared_to_start(made[0], best), markup=False, highlight=False, soft_wrap=True)
     for kind, path in (("tuned", toml), ("trials", table), ("figure", figure)):
         console.print(f"{kind:8s} {path}", markup=False, highlight=False, soft_wrap=True)
 
@@ -107,6 +108,15 @@ def _start_and_best(sought: ParameterSearch, made: Sequence[Trial], best: Trial,
     table.add_section()
     table.add_row("objective", _objective(made[0]), _objective(best), "")
     return table
+
+
+def compared_to_start(start: Trial, best: Trial) -> str:
+    """In one sentence, whether the search improved the parameters that it started from."""
+    if start.failed > best.failed:
+        return f"Better than the start: {best.failed} failed runs in place of {start.failed}."
+    if best.objective < start.objective:
+        return f"Better than the start: the objective fell from {number(start.objective)} to {number(best.objective)}."
+    return "Not better than the start: no trial had a lower objective than the parameters the search started from."
 
 
 def _objective(trial: Trial) -> str:
