@@ -1,4 +1,4 @@
-"""What a rigid-body model says beyond pinocchio's own functions."""
+"""Functions of a rigid-body model that pinocchio does not have."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pliant.spatial import Array
 
 def mass_matrix(model: pin.Model, data: pin.Data, q: Array) -> Array:
     """M(q) (n, n), rotor inertia included, kg m² (kg for prismatic joints). Both triangles are filled."""
-    upper = np.triu(np.asarray(pin.crba(model, data, q)))  # pinocchio does not promise the lower one
+    upper = np.triu(np.asarray(pin.crba(model, data, q)))  # pinocchio does not fill the lower one reliably
     return upper + np.triu(upper, 1).T
 
 

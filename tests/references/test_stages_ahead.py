@@ -100,5 +100,5 @@ def test_a_stage_that_only_contact_ends_goes_on_and_a_failure_is_not_foreseen() 
 
 def test_a_preview_needs_a_source_that_knows_what_is_coming() -> None:
     box = LatestReference(Reference(0.0, (TaskReference("flange", HERE),)))
-    with pytest.raises(ConfigError, match="says what is coming, and LatestReference does not"):
+    with pytest.raises(ConfigError, match="next references are known, and those of LatestReference are not"):
         HarmonicPlanner(box, ROBOT.placement, lookahead=Lookahead(3, 0.01))

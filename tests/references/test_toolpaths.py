@@ -146,7 +146,7 @@ def test_a_square_may_only_be_drawn_whole() -> None:
         square((0.1, 0.1), 1.5)
     with pytest.raises(ConfigError, match=r"size of a pattern must be above zero, got \[0.1, -1.0\]"):
         raster((0.1, -1.0), 0.01)
-    with pytest.raises(ConfigError, match="all its points lie in one place"):
+    with pytest.raises(ConfigError, match="all its points are the same"):
         laid(SURFACES[0], np.zeros((4, 2)))
 
 

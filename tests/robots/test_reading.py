@@ -204,4 +204,4 @@ def test_missing_meshes_are_counted(tmp_path: Path) -> None:
 
     text = urdf().replace("<inertial>", visual("a.stl") + visual("b.stl") + visual("c.stl") + "<inertial>", 1)
     notes = " ".join(load(tmp_path, text, "urdf").notes)
-    assert "meshes that are not there are not drawn: a.stl and 2 more" in notes
+    assert "missing meshes are not drawn: a.stl and 2 more" in notes

@@ -128,14 +128,14 @@ def test_what_cannot_be_touched_is_refused_in_a_sentence(tmp_path: Path) -> None
     assert "lies along" in refused(cap(0.03), tmp_path / "shell.stl", outside=[0.0, 0.0, 0.0])
     inwards = box()
     inwards.invert()
-    assert "look inwards" in refused(inwards, tmp_path / "inwards.ply")
+    assert "face inwards" in refused(inwards, tmp_path / "inwards.ply")
     assert "surface.scale = 0.001" in refused(box().apply_scale(1e3), tmp_path / "millimetres.stl")
     assert "only 0.2 mm long" in refused(box(), tmp_path / "small.obj", scale=1e-3)
     assert "scale" in refused(box(), tmp_path / "box.stl", scale=-1.0)
     assert "more than 8000000 (64 MB)" in refused(box(), tmp_path / "box.stl", grid=5e-4)
     one_wrong = box()
     one_wrong.faces[0] = one_wrong.faces[0][::-1]
-    assert "different sides" in refused(one_wrong, tmp_path / "mixed.ply")
+    assert "inconsistent orientation" in refused(one_wrong, tmp_path / "mixed.ply")
     many = trimesh.Trimesh(np.random.default_rng(0).random((300_000, 3)), np.arange(603_000).reshape(-1, 3) % 300_000)
     assert "simplify" in refused(many, tmp_path / "many.ply")
 

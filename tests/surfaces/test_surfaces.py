@@ -111,5 +111,5 @@ def test_what_is_not_a_surface_is_refused() -> None:
         CylinderSurface(np.zeros(3), np.eye(3), -0.1)
     with pytest.raises(ConfigError, match="radius of a sphere must be above zero"):
         SphereSurface(np.zeros(3), np.eye(3), float("nan"))
-    with pytest.raises(ConfigError, match="stands upright"):
+    with pytest.raises(ConfigError, match="is normal to the surface"):
         PlaneSurface(np.zeros(3), np.eye(3)).tangent([0.0, 0.0, 0.0], [0.0, 0.0, 1.0])

@@ -1,7 +1,7 @@
 """Predictive control in contact: classical, torque feedback and force feedback, for any serial robot.
 
-A configuration (`MpcConfig`, or one of those with defaults) is bound to a robot by `MpcController`, which
-solves the problem with the compiled core at every period.
+`MpcController` binds a configuration (`MpcConfig`, or one with defaults) to a robot and solves the problem with the
+compiled core at every period.
 """
 
 from pliant.mpc.config import Bounds, Compensation, Contact, MpcConfig

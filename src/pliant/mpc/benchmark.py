@@ -1,6 +1,6 @@
-"""How long the predictive controllers take: per node, per iteration, per solve in a warm-started noisy loop.
+"""Computation times of the predictive controllers: per node, per iteration, per solve in a warm-started noisy loop.
 
-Times of one machine say little to another, so that the same run also times a yardstick: one call of
+Times depend on the machine, so the same run also measures a reference: one call of
 `pinocchio.computeABADerivatives` from Python on the same robot.
 """
 
@@ -31,10 +31,10 @@ def run(
     growth: bool = True,
     robot: str = "iiwa14",
 ) -> dict[str, Any]:
-    """Times nodes and solves of the three controllers on a seven-joint arm.
+    """Measures nodes and solves of the three controllers on a seven-joint arm.
 
     Args:
-        solves: of each case, back to back.
+        solves: of each case, without pauses.
         pause: s of sleep before each of `paused_solves` solves more: caches are cold then, as on a busy robot.
         paused_solves: how many; 0 for none.
         bridge_solves: of the force-feedback problem by mim-solvers over the same nodes; 0, or crocoddyl missing: none.
@@ -92,7 +92,7 @@ def _timed(case: BenchCase, solves: int, pause: float, paused: int, yardstick: d
 
 
 def _solve_times(loop: NoisyLoop, solves: int, pause: float) -> dict[str, Any]:
-    """Times of `solves` solves after a tenth more to warm up."""
+    """Times of `solves` solves, after a tenth as many for warm-up."""
     warm_up = max(solves // 10, 5)
     watch, iterations, reached = Stopwatch(), np.empty(solves), 0
     for k in range(-warm_up, solves):

@@ -1,4 +1,4 @@
-"""Delay and averaging of a controller with compensations, in whole control periods.
+"""Delay and averaging of a controller with compensation, in whole control periods.
 
 Offset-free control by estimated disturbances: Pannocchia, Rawlings, "Disturbance models for offset-free
 model-predictive control", AIChE Journal 49, 2003. Here the disturbance is a joint torque d̂ (momentum observer): the
@@ -16,12 +16,12 @@ from pliant.sampling import whole_periods
 
 @dataclass(frozen=True)
 class Delays:
-    """How late a controller's commands are."""
+    """Delays of a controller's commands."""
 
     under_way: int
     """periods between a reading and the effect of the command that answers to it"""
     averaged: int
-    """torques in the mean that is sent, at least 1"""
+    """number of torques in the mean that is sent, at least 1"""
     late: int
     """periods by which averaging delays a torque"""
     lead: float

@@ -19,7 +19,7 @@ Axes = Literal["local", "world", "surface"]
 
 
 class Contact(ControllerConfig):
-    """Where and how the robot touches."""
+    """Contact of the robot: frame, dimension and model."""
 
     frame: str | None = Field(default=None, description="contact frame; None: the tool frame")
     dimension: Literal[1, 3, 6] = Field(default=1, description="1 normal force, 3 force, 6 force and moment")
@@ -44,7 +44,7 @@ class Contact(ControllerConfig):
 
 
 class Bounds(ControllerConfig):
-    """Inequalities. With none of them set the solver takes its faster path."""
+    """Inequality constraints. Without any the solver uses a faster method."""
 
     torque: bool = Field(default=False, description="keep the control within the robot's torque limits")
     force_max: float | None = quantity(None, "N", "0 ≤ normal force ≤ force_max", gt=0.0)
@@ -56,18 +56,18 @@ class Bounds(ControllerConfig):
 
 
 class Compensation(ControllerConfig):
-    """What makes a controller free of offsets and bear delays. Everything is off by default."""
+    """Offset-free control and compensation of delays. Everything is off by default."""
 
     disturbance: bool = Field(
         default=False,
-        description="take the estimated disturbance out of the torque, and count it in the prediction over the delay",
+        description="subtract the estimated disturbance from the torque, and use it in the prediction over the delay",
     )
     sensing_delay: float = quantity(0.0, "s", "age of a reading", ge=0.0, le=0.1)
     computation_delay: float = quantity(0.0, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
     averaging: float = quantity(
         0.0,
         "s",
-        "the torque that is sent is the mean over this time; it removes what rings in the drives",
+        "the torque that is sent is the mean over this time; it removes oscillations of the drives",
         ge=0.0,
         le=0.1,
     )
@@ -108,21 +108,21 @@ class MpcConfig(ControllerConfig):
         default="hold", description="between two solves: hold the torque, or the solver's own state feedback"
     )
     posture: Literal["start", "reference"] = Field(
-        default="reference", description="posture reference: where the controller started, or the task's if it has one"
+        default="reference", description="posture reference: the posture at the start, or the task's if it has one"
     )
     gravity: bool = Field(
         default=True, description="the robot's weight is part of the model; off where the robot compensates it itself"
     )
     phase_by: Literal["name", "contact"] = Field(
         default="name",
-        description="costs of a phase: those of its name, or the first with the contact that is felt now",
+        description="costs of a phase: those of its name, or the first one that matches the present contact state",
     )
     task_velocity: bool = Field(
         default=True, description="velocity cost about the task's velocity; false: about zero, as in [FFMPC] eq. 25.5"
     )
     contact: Contact = Contact()
     torque_bandwidth: float = quantity(50.0, "Hz", "f_c of the actuation in torque feedback", gt=0.0)
-    fallback_damping: float = quantity(5.0, "N·m·s/rad", "joint damping when no plan is left", ge=0.0)
+    fallback_damping: float = quantity(5.0, "N·m·s/rad", "joint damping after the last usable plan has ended", ge=0.0)
     max_gap: float = quantity(
         10.0, "that of the states", "Σ|f(x, u) − x⁺| over states and nodes above which a solution is not used", gt=0.0
     )
@@ -137,7 +137,7 @@ class MpcConfig(ControllerConfig):
 
     @property
     def predictive_model(self) -> PredictiveModel:
-        """What follows from `kind`."""
+        """Properties of the model, from `kind`."""
         return MODELS[self.kind]
 
     @model_validator(mode="after")

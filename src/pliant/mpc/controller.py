@@ -26,14 +26,14 @@ from pliant.spatial import Array
 class MpcController(Controller[MpcState]):
     """Solves the predictive problem every `config.period` and sends its first torque.
 
-    Between two solves it does what `config.between` says. Without a usable solution it follows the last usable plan to
-    its end, then compensates gravity with joint damping. No torque that is not finite leaves it.
+    Between two solves it follows `config.between`. Without a usable solution it follows the last usable plan to
+    its end, then compensates gravity with joint damping. It sends no torque that is not finite.
 
-    With `config.compensation` it solves from the state at which its command takes effect and takes the estimated
-    disturbance out of what it sends.
+    With `config.compensation` it solves from the state at which its command takes effect and subtracts the estimated
+    disturbance from what it sends.
 
     This class is the handle of one compiled call (`cpp/mpc/step`), which does everything between estimate and torque;
-    `tests/twins/mpc_step` says the same in Python. Its state can be copied (`copy.copy`) and pickled.
+    `tests/twins/mpc_step` implements the same in Python. Its state can be copied (`copy.copy`) and pickled.
 
     Args:
         robot: serial, at most 8 joints.
@@ -56,8 +56,8 @@ class MpcController(Controller[MpcState]):
 
     @property
     def needs(self) -> Needs:
-        """A preview at every solve, from the time at which its command takes effect, and what its model and
-        compensations read."""
+        """A preview at every solve, from the time at which its command takes effect, and the signals of its model and
+        compensation."""
         wanted = needs_of(self.config)
         return replace(
             wanted, preview=Lookahead(self.config.horizon, self.config.dt, self.delays.lead, self.config.period)
@@ -65,7 +65,7 @@ class MpcController(Controller[MpcState]):
 
     @property
     def regulates_force(self) -> bool:
-        """Its costs hold the predicted force to the reference's in every phase with contact."""
+        """True: its costs track the reference's force in every phase with contact."""
         return True
 
     @property
@@ -74,7 +74,7 @@ class MpcController(Controller[MpcState]):
         return diagnostics.CHANNELS
 
     def init(self, estimate: Estimate) -> MpcState:
-        """State before the first step: what was sent so far goes on.
+        """State before the first step: the torque sent so far is held.
 
         Raises:
             SignalError: the estimate lacks the contact force that force feedback needs, or is not finite.

@@ -1,4 +1,4 @@
-"""What the controller wants: cost terms with weight and activation, and how they change from phase to phase.
+"""Cost terms with weight and activation, and how they change from phase to phase.
 
 The cost of a horizon is J = Σ_k dt · ½ Σ_i w_i a_i² r_i² + its value at the last node ([FFMPC] eq. 25–29): `weight` is
 w, `activation` is a, which is squared.
@@ -22,7 +22,7 @@ class Term(ControllerConfig):
     activation: tuple[float, ...] = Field(
         default=(1.0,),
         min_length=1,
-        description="a per component, squared; the last one counts for all that follow",
+        description="a per component, squared; the last one applies to all further components",
     )
     terminal: float | None = quantity(
         None, "1/(unit of the term)²", "w of the last node; None: as the running ones", ge=0.0
@@ -50,7 +50,7 @@ class Term(ControllerConfig):
             size: number of components of the residual.
             dt: s.
             name: of the term, for the error.
-            per_joint: the components are joints: a list made for a longer arm counts as far as there are joints.
+            per_joint: the components are joints: of a list made for a longer arm, the first entries are used.
 
         Returns:
             (N+1, size) w a².
@@ -73,7 +73,7 @@ class Term(ControllerConfig):
 
 
 class Costs(ControllerConfig):
-    """The cost terms that count in every phase unless the phase has its own; the unit is that of the weight."""
+    """The cost terms of every phase that has no own ones; the unit is that of the weight."""
 
     posture: Term = quantity(Term(), "1/rad²", "joint positions about the posture reference")
     joint_velocity: Term = quantity(Term(), "s²/rad²", "joint velocities about zero")
@@ -87,7 +87,7 @@ class Costs(ControllerConfig):
 
 
 class PhaseCosts(ControllerConfig):
-    """What is different in one phase of a task. Terms that are None are the common ones."""
+    """Costs of one phase of a task. Terms that are None are the common ones."""
 
     contact: bool = Field(default=False, description="whether the model is in contact")
     posture: Term | None = quantity(None, "1/rad²", "joint positions about the posture reference; none: the common one")

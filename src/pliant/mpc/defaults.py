@@ -12,7 +12,7 @@ from pliant.mpc.models import Kind
 
 _KIND = "which model predicts"
 _PHASES = "costs of each phase by name"
-_PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force rules
+_PLANE = (1.0, 1.0, 0.0)  # position is free along the normal, where the force is controlled
 
 
 def _phases(track: Term, contact: Term, circle: Term) -> Any:
@@ -41,7 +41,7 @@ _VELOCITY = Term(weight=0.05, terminal=1.0)
 
 
 def _costs(**own: Term) -> Costs:
-    """The terms that the controllers share, and those of one of them."""
+    """The common cost terms of the controllers, and those of one controller."""
     shared = {
         "posture": _POSTURE,
         "joint_velocity": _JOINT_VELOCITY,
@@ -63,10 +63,10 @@ class ForceFeedbackMpc(MpcConfig):
 
 
 class OffsetFreeMpc(ForceFeedbackMpc):
-    """Force feedback without offsets, for a robot whose readings are 1 ms and whose commands 5 ms late.
+    """Force feedback without offsets, for a robot with a delay of 1 ms of the readings and 5 ms of the commands.
 
-    It starts from a stiff contact, with which it is stable on soft and stiff ones, and then takes the stiffness that is
-    estimated.
+    It starts from a stiff contact, with which it is stable on soft and stiff ones, and then uses the estimated
+    stiffness.
     """
 
     contact: Contact = Contact(stiffness=(3e4,), damping=(1e2,), integrator="exponential")
@@ -91,7 +91,7 @@ class OffsetFreeMpc(ForceFeedbackMpc):
 
 class ViscoElasticMpc(ForceFeedbackMpc):
     """[FFMPC] section V-B: force feedback's model, with the force that its spring and damper give for q and v. The
-    stiffness is that of the paper's table: here it decides the force."""
+    stiffness is that of the paper's table, because here it determines the force."""
 
     contact: Contact = Contact(stiffness=(1e4,), damping=(1e2,), integrator="exponential")
 

@@ -16,11 +16,11 @@ STATUS_CODES: Mapping[str, int] = {
 """Code of channel mpc/status"""
 
 SOURCE_CODES: Mapping[str, int] = {"plan": 0, "old plan": 1, "gravity and damping": 2}
-"""Code of channel mpc/source: where the torque came from"""
+"""Code of channel mpc/source: the source of the torque"""
 
 
 class DiagnosticChannel(NamedTuple):
-    """What a diagnostic is."""
+    """Unit and shape of a diagnostic."""
 
     unit: str
 

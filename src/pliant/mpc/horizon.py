@@ -1,4 +1,4 @@
-"""What the task asks at each node of a horizon, for nodes that are written in Python.
+"""References at each node of a horizon, for nodes in Python.
 
 The controllers' own step does the same in the compiled core (`cpp/mpc/step/horizon.cpp`).
 """

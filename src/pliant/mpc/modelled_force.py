@@ -1,4 +1,4 @@
-"""Force feedback without a force sensor: the contact force is what a spring and damper say of the state.
+"""Force feedback without a force sensor: the contact force is computed from the state with a spring and damper model.
 
 [FFMPC] Kleff, Jordana, Mansard, Righetti, "Force feedback in model predictive control: a soft contact approach", 2024,
 sec. V-B, the "naive approach to visco-elastic contact".
@@ -26,7 +26,7 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True, slots=True)
 class ModelledForceState:
-    """State of the controller inside, and where the contact is held to be."""
+    """State of the inner controller, and the assumed contact point."""
 
     inner: MpcState
     anchor: Array | None = None
@@ -37,8 +37,8 @@ class ModelledForceMpc(Controller[ModelledForceState]):
     """Predicts as force feedback does, from λ = −K (p − p_c)·n − B ṗ·n ([FFMPC] eq. 16) instead of a measured force.
 
     Equations 16 and 18 are one model, the second the time derivative of the first: with λ of the model at the start
-    of the horizon the force state stays what q and v say, and (q, v) is all the state there is. p_c is where the
-    reference stood when its phase with contact began: the surface as believed.
+    of the horizon the force state is a function of q and v, so that (q, v) is the whole state. p_c is the position of
+    the reference when its phase with contact began: the believed surface.
 
     Args:
         robot: serial, at most 8 joints.
@@ -68,7 +68,7 @@ class ModelledForceMpc(Controller[ModelledForceState]):
 
     @property
     def regulates_force(self) -> bool:
-        """It holds the force of its model to the reference's; nothing tells it of another."""
+        """True: it regulates the force of its model to the reference's, without a measurement."""
         return True
 
     @property

@@ -1,4 +1,4 @@
-"""The predictive models, as what follows from the choice of one; nobody else compares their names."""
+"""The prediction models and their properties; other modules use the properties, not the names."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class PredictiveModel:
     torque_state: bool = False
     """the joint torque is part of the state, measured, and what is sent is interpolated from it"""
     touches: bool = True
-    """there is contact"""
+    """whether there is contact"""
     rigid: bool = False
-    """the contact does not give way: its force follows from the acceleration"""
+    """rigid contact: its force follows from the acceleration"""
     springy: bool = False
-    """the contact's force follows from its deflection and rate, and is no state"""
+    """the contact force follows from deflection and rate, and is not a state"""
 
     def extra(self, m: int, nu: int) -> int:
         """Entries of the state beside positions and velocities, for m contact forces and nu torques."""
@@ -40,4 +40,4 @@ MODELS: Mapping[Kind, PredictiveModel] = {
         PredictiveModel("naive_viscoelastic", springy=True),
     )
 }
-"""kind → what it is"""
+"""kind → properties"""

@@ -1,4 +1,4 @@
-"""What a predictive controller wants to be told, and parameters that suit a task."""
+"""Signals that a predictive controller needs, and parameters that suit a task."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pliant.mpc.make_problem import task_inertia
 from pliant.robot import Robot
 
 _POSTURE_SHARE = 0.05
-"""of the default posture cost, where a task says nothing of phases or posture"""
+"""factor on the default posture cost, for tasks without phases or posture"""
 _TRACK = 1000.0  # 1/m²
 _POSITION = Term(weight=_TRACK, terminal_times_dt=False)
 _FELT = {
@@ -25,7 +25,7 @@ _FELT = {
 
 
 def needs_of(config: MpcConfig) -> Needs:
-    """What a configuration wants; the preview begins now."""
+    """The needs of a configuration; the preview begins now."""
     compensation = config.compensation
     explained = "normal" if config.contact.dimension == 1 else "all"
     return Needs(
@@ -42,10 +42,10 @@ def needs_of(config: MpcConfig) -> Needs:
 def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfig:
     """The task's first frame, period and phases; the robot's delays, where the controller predicts over them.
 
-    A phase that the configuration does not know has the costs of its last phase with contact, or of its first one
-    without. Where the force is a state and nothing is estimated of the contact, its stiffness is the believed one.
-    Where the task has no phases, the costs are those of contact or of free motion as it is felt, and the position
-    counts more against the posture. Where phases ask something of each axis, each has such costs of its own.
+    A phase without costs in the configuration has the costs of its last phase with contact, or of its first one
+    without. Where the force is a state and the stiffness is not estimated, the believed stiffness is used. Where the
+    task has no phases, the estimated contact state selects the costs of contact or free motion, and the position has
+    more weight relative to the posture. Where phases have modes or bounds of single axes, each phase has its own costs.
     """
     named = bool(believed.phases)
     costs = config.costs
@@ -68,9 +68,9 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
 
 
 def _as_stiff(robot: Robot, config: MpcConfig, believed: Believed) -> Contact:
-    """With the believed stiffness and damping, where the force is a state and nobody estimates them while it runs.
+    """With the believed stiffness and damping, where the force is a state and they are not estimated online.
 
-    At most half of the stiffness that the exponential integrator bears, Λ/dt².
+    At most half of the largest stiffness of the exponential integrator, Λ/dt².
     """
     spring = config.predictive_model.force_state and not config.compensation.environment
     if not spring or believed.stiffness is None or believed.damping is None:
@@ -86,7 +86,7 @@ def _as_stiff(robot: Robot, config: MpcConfig, believed: Believed) -> Contact:
 
 
 def _on_surface(contact: Contact, believed: Believed) -> Contact:
-    """Force, and position beside it, in the axes of the believed surface, which turn along a path."""
+    """Force and position in the axes of the believed surface, which turn along a path."""
     if believed.surface is None:
         return contact
     normal = tuple(float(entry) for entry in believed.surface.normal(believed.surface.top()))

@@ -1,4 +1,4 @@
-"""A plan that follows its own prediction with noise: what the timings of solvers and nodes are taken on."""
+"""A loop that follows its own prediction with noise, for time measurements of solvers and nodes."""
 
 from __future__ import annotations
 
@@ -23,13 +23,14 @@ _PERIOD = 2e-3  # s between two solves
 
 @dataclass(frozen=True)
 class BenchCase:
-    """What is timed."""
+    """What is measured."""
 
     name: str
     config: MpcConfig
     robot: Robot
     press: bool = False
-    """press on one spot with a force that swells, instead of drawing a circle: a contact in 3 or 6 dimensions sticks"""
+    """press on one spot with a varying force, instead of following a circle, because a contact in 3 or 6 dimensions
+    sticks"""
 
 
 class NoisyLoop:
@@ -61,7 +62,7 @@ class NoisyLoop:
         self.solver.quasi_static(self.x)
 
     def next_state(self) -> Array:
-        """(nx,) what the sensors say one period later; references move on with it."""
+        """(nx,) measured state one period later; the references are advanced too."""
         self._time += _PERIOD
         self.problem.write_references(self.solver.nodes, self._reference(), self.robot.home)
         return self.x + self._noise * self._rng.normal(size=self.x.shape)

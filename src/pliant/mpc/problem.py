@@ -1,4 +1,5 @@
-"""The optimal control problem of a predictive controller for one robot: dimensions, checks, and what its nodes hold."""
+"""The optimal control problem of a predictive controller for one robot: dimensions, checks and parameters of its
+nodes."""
 
 from __future__ import annotations
 
@@ -146,7 +147,7 @@ class MpcProblem:
         return np.eye(3) if axes == "world" or R_world_contact is None else R_world_contact
 
     def in_contact_axes(self, wrench: Array, R_world_axes: Array) -> Array:
-        """Components of wrenches that the model knows.
+        """Components of wrenches that the model has.
 
         Args:
             wrench: (..., 6) world axes, N and N·m.

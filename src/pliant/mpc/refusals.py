@@ -1,4 +1,4 @@
-"""Why a step has no answer, in a sentence."""
+"""Errors of a step of the compiled core."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def build_modelled_force(robot: Robot, config: MpcConfig, period: float) -> Mode
 
 
 def _weightless(robot: Robot) -> Robot:
-    """The same robot without gravity: what a controller sees of one that compensates its weight by itself."""
+    """The same robot without gravity: the model of a robot that compensates its weight by itself."""
     model = robot.model.copy()
     model.gravity = pin.Motion.Zero()
     return replace(robot, model=model)
@@ -71,7 +71,7 @@ def _entry(
 
 
 def advise_mpc(robot: Robot, config: MpcConfig, period: float) -> tuple[str, ...]:
-    """What makes the solver converge badly: force costs along a surface on which the predicted contact slides."""
+    """Warning about slow convergence: force costs along a surface on which the predicted contact slides."""
     if config.contact.friction is None:
         return ()
     phases = [phase.over(config.costs) for phase in config.phases.values() if phase.contact]
@@ -107,7 +107,8 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
         ),
         _entry(
             "visco-elastic-mpc",
-            "predictive, visco-elastic contact, the force that it predicts from follows from position and velocity",
+            "predictive, visco-elastic contact, the force at the start of the prediction follows from"
+            " position and velocity",
             ViscoElasticMpc(),
             advise_mpc,
             build_modelled_force,

@@ -1,4 +1,4 @@
-"""Coulomb friction of the predicted contact: how the tangential force state gives way, with derivatives.
+"""Coulomb friction of the predicted contact: the rate of the tangential force state, with derivatives.
 
 A bristle after Dahl, "A solid friction model" (Aerospace Corporation TOR-0158(3107-18)-1, 1968), with a damper; the
 discrete map is derived in docs/mpc_derivation.md.
@@ -24,9 +24,9 @@ class SlidingRate:
     rate: Array
     """(2,) N/s, (λ⁺ − λ)/dt"""
     by_sticking: Array
-    """(2, 2) over the rate that the contact has without friction"""
+    """(2, 2) derivative with respect to the rate of a sticking contact"""
     by_force: Array
-    """(2, 3) 1/s, over the force at the start of the step"""
+    """(2, 3) 1/s, derivative with respect to the force at the start of the step"""
 
 
 def sliding_rate(sticking_rate: Array, force: Array, stiffness: Array, friction: float, dt: float) -> SlidingRate:

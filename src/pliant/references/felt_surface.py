@@ -1,4 +1,4 @@
-"""References on a surface as it is felt, not as it was believed."""
+"""References on the estimated surface instead of the believed one."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class FeltSurfaceState:
 
 
 class OnFeltSurface(ReferenceSource[FeltSurfaceState]):
-    """Turns the references of a task about the place of first contact as the surface is felt to be turned
+    """Turns the references of a task about the point of first contact by the estimated rotation of the surface
     (`Estimate.surfaces`): path, tool, direction of the force and task axes, now and over the horizon.
 
     The turn follows the estimate with a time constant, so that references stay continuous. A shift is not applied:
-    references that wait for contact have found the height by themselves.
+    references that begin at contact already have the right height.
 
     Args:
         inner: references on the believed surface.
@@ -49,7 +49,7 @@ class OnFeltSurface(ReferenceSource[FeltSurfaceState]):
 
     def __init__(self, inner: ReferenceSource[Any], frame: str, memory: float = _MEMORY) -> None:
         if not (math.isfinite(memory) and memory > 0.0):
-            raise ConfigError(f"the time constant of a felt surface must be above zero (s), got {memory}")
+            raise ConfigError(f"the time constant of an estimated surface must be above zero (s), got {memory}")
         self.inner, self.frame, self.memory = inner, frame, memory
 
     def init(self, estimate: Estimate) -> FeltSurfaceState:
@@ -97,5 +97,5 @@ def _preview(ahead: Preview, R: Array, pivot: Array) -> Preview:
 
 
 def _twist(R: Array, values: Array) -> Array:
-    """Both halves of (…, 6) turned."""
+    """Linear and angular part of (…, 6), turned."""
     return np.concatenate([values[..., :3] @ R.T, values[..., 3:] @ R.T], axis=-1)

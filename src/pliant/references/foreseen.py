@@ -14,7 +14,7 @@ from pliant.spatial import Array
 
 
 class Timed(Protocol):
-    """A source that says its reference at any time."""
+    """A source whose reference is known at any time."""
 
     def at(self, time: float, elapsed: float) -> Reference:
         """The reference at `time` of the loop's clock, `elapsed` s after the start."""
@@ -22,7 +22,7 @@ class Timed(Protocol):
 
 
 class Coming(Protocol):
-    """A source that knows what it will say."""
+    """A source whose next references are known."""
 
     def coming(self, state: Any, until: float) -> Sequence[Reference]:
         """Its next references, each with the s from which it holds."""

@@ -1,4 +1,4 @@
-"""From where the reference was when a tool met a surface to where the surface was found, without a jump."""
+"""Smooth transition of the reference to the height at which contact was made."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ SETTLE = 0.1  # s, from the speed of the approach to rest
 
 
 class Height(NamedTuple):
-    """How far a surface was found above the believed one, along its normal, as the reference follows it.
+    """Height of the touched surface above the believed one, along its normal, as the reference follows it.
 
     The height goes from what the reference had at the contact, at the speed it had, to what was found: a quintic that
     ends at rest.

@@ -1,4 +1,4 @@
-"""Plays a task in phases: reach, track, touch, press, draw; by timetable or by contact that is found."""
+"""References of a task in phases, which change by time or by contact."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class PhaseState:
 
 
 class Said(NamedTuple):
-    """What a phase says at one instant, before it is anchored. Arrays are shared: do not write into them."""
+    """Reference of a phase at one instant, before it is anchored. Arrays are shared: do not write into them."""
 
     position: Array
     rotation: Array
@@ -62,12 +62,13 @@ class Said(NamedTuple):
 
 
 class PhasedSource(ReferenceSource[PhaseState]):
-    """Plays the phases of a task for one frame, with a preview in which each node has the phase of its own time.
+    """References of the phases of a task for one frame, with a preview in which each node has the phase of its own
+    time.
 
-    A phase that ends on contact has no known end: until then the preview goes on with it.
+    A phase that ends on contact has no known end; the preview continues it.
 
     Args:
-        robot: gives the frame's position, to anchor phases where contact was made.
+        robot: gives the frame's position, to anchor phases at the contact point.
         frame: the controlled frame.
         phases: in order; the last one holds.
         rotation: R_world_frame (3, 3) in phases that have none of their own.
@@ -96,7 +97,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         self._model, self._data = robot.model, robot.model.createData()
         self._frame_id = robot.frame_id(frame)
         self.posture = None if posture is None else robot.vector(posture, "the posture")
-        # a pure function; an instant that is in the preview of many ticks is worked out once
+        # a pure function; an instant that is in the preview of many ticks is computed once
         self._at = lru_cache(_REMEMBERED)(self._work_out)
 
     def init(self, estimate: Estimate) -> PhaseState:
@@ -131,7 +132,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         return Said(point.value, rotation, velocity, acceleration, wrench, turned, normal, posture, row)
 
     def _advanced(self, estimate: Estimate, state: PhaseState) -> PhaseState:
-        """The phase of now, as the clock and the contact say."""
+        """The present phase, from time and contact."""
         while state.index + 1 < len(self.phases):
             phase = self.phases[state.index]
             if phase.ends_on_contact:
@@ -165,9 +166,9 @@ class PhasedSource(ReferenceSource[PhaseState]):
             raise RunFailedError(
                 f"phase {landed.name!r}: contact was felt {1e3 * abs(found):.0f} mm"
                 f" {'above' if found > 0.0 else 'below'} the believed surface, more than the"
-                f" {1e3 * landed.within:.0f} mm within which it is looked for:"
-                " something stands in the way, the surface is elsewhere, or contact is believed too early: a load"
-                " that the sensor does not know is taken off with estimation.tare=weight"
+                f" {1e3 * landed.within:.0f} mm within which it is searched:"
+                " there is an obstacle, the surface is elsewhere, or contact is detected too early: with"
+                " estimation.tare=weight an unknown load of the sensor is removed"
             )
         gap = float(normal @ (arriving.position - here))
         height = Height(after.start, found, gap, float(normal @ arriving.velocity[:3]))
@@ -181,14 +182,14 @@ class PhasedSource(ReferenceSource[PhaseState]):
         )
 
     def _next(self, state: PhaseState, start: float) -> PhaseState:
-        """The following phase, beginning at `start`; contact, if it is new, is expected where the reference is."""
+        """The following phase, beginning at `start`; a new contact is expected at the reference."""
         position = self._task(state, start).position
         new = self.phases[state.index + 1].touches and not self.phases[state.index].touches
         touch = position if new else state.touch
         return PhaseState(state.index + 1, start, position, touch, state.height, state.next_look)
 
     def _expected(self, state: PhaseState, time: float) -> PhaseState:
-        """The phase of a later time, as far as it can be known now."""
+        """The phase at a later time, as far as it is known now."""
         while state.index + 1 < len(self.phases):
             phase = self.phases[state.index]
             if phase.ends_on_contact or time < state.start + phase.duration - 1e-9:
@@ -200,7 +201,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         return self._placed(state, self._said(state, time), time)
 
     def _placed(self, state: PhaseState, said: Said, time: float) -> TaskReference:
-        """What the phase says, moved to where it counts from."""
+        """The reference of the phase, moved to its anchor."""
         phase = self.phases[state.index]
         offset = {"begin": state.begin, "touch": state.touch}.get(phase.anchor, 0.0)
         position, velocity, acceleration = said.position + offset, said.velocity, said.acceleration
@@ -214,11 +215,12 @@ class PhasedSource(ReferenceSource[PhaseState]):
         return TaskReference(self.frame, position, said.rotation, velocity, acceleration, said.wrench, None, said.axes)
 
     def _said(self, state: PhaseState, time: float) -> Said:
-        """What the phase says, on its own clock; rounded, so that one instant seen from two ticks is one instant."""
+        """The reference of the phase on its own clock; times are rounded, so that an instant is the same in two
+        ticks."""
         return self._at(state.index, round(max(time - state.start, 0.0), 9))
 
     def _preview(self, state: PhaseState, times: Array) -> Preview:
-        """What will be wanted at later times (N+1,) s."""
+        """The references at later times (N+1,) s."""
         rows: list[Array] = []
         moved: list[Moved] = []
         names: list[str] = []

@@ -1,4 +1,4 @@
-"""Previews from rows of numbers: an instant is packed once and stands in the previews of many ticks."""
+"""Previews from rows of numbers: an instant is packed once and used in the previews of many ticks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pliant.signals import Preview
 from pliant.spatial import Array
 
 Moved = tuple[Array, float, float]
-"""by how much an instant is moved: offset (3,) m; height along the normal, m, and its rate, m/s"""
+"""displacement of an instant: offset (3,) m; height along the normal, m, and its rate, m/s"""
 
 _POSITION, _VELOCITY, _WRENCH = slice(0, 3), slice(12, 18), slice(18, 24)
 _ROTATION, _AXES = slice(3, 12), slice(24, 33)
@@ -58,9 +58,9 @@ def preview_of_rows(
     Args:
         times: (N+1,) s.
         rows: N + 1 of `packed`.
-        moved: by how much each of them is moved.
+        moved: displacement of each of them.
         phase: (N+1,) names.
-        turning: whether the task's axes are told.
+        turning: whether the preview has the task's axes.
     """
     count = len(times)
     width = min(map(len, rows))

@@ -1,4 +1,4 @@
-"""Parameters of the impedances changed while the robot moves, on a timetable."""
+"""Changes of impedance parameters at given times during a run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pliant.signals import Estimate, ImpedanceTuning, Reference
 
 @dataclass(frozen=True)
 class TuningChange:
-    """From a time on, the task at a frame has another tuning."""
+    """A new tuning of the task at a frame, from a time on."""
 
     time: float
     """s since the start of the run"""
@@ -21,21 +21,21 @@ class TuningChange:
 
 
 class RetunedState(NamedTuple):
-    """State of the source inside, and what is in force."""
+    """State of the inner source, and the active tunings."""
 
     inner: Any
     done: int
     """changes that were made"""
     tunings: dict[str, ImpedanceTuning]
-    """frame → tuning in force"""
+    """frame → active tuning"""
 
 
 class Retuned(ReferenceSource[RetunedState]):
-    """Another source's references with tunings swapped whole between two ticks.
+    """Another source's references with changed tunings, replaced as a whole between two ticks.
 
     Args:
         inner: where the references come from.
-        changes: what changes when, in any order.
+        changes: in any order.
     """
 
     def __init__(self, inner: ReferenceSource[Any], changes: Sequence[TuningChange]) -> None:

@@ -1,4 +1,4 @@
-"""Targets that change at given times or by hand: what planners and exploration start from."""
+"""Targets that change at given times or by hand: inputs of planners and exploration."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class ScheduleState:
     start: float
     """s"""
     index: int = 0
-    """of the entry that holds"""
+    """index of the active entry"""
 
 
 class Schedule(ReferenceSource[ScheduleState]):
@@ -47,13 +47,13 @@ class Schedule(ReferenceSource[ScheduleState]):
         return at_time(self._references[index], estimate.time), ScheduleState(state.start, index)
 
     def coming(self, state: ScheduleState, until: float) -> list[Reference]:
-        """What will be said other than now up to a time in s. Each reference has the time from which it holds."""
+        """The changes of the reference up to a time in s. Each reference has the time from which it holds."""
         later = zip(self._times[state.index + 1 :], self._references[state.index + 1 :], strict=True)
         return [at_time(said, state.start + time) for time, said in later if state.start + time <= until]
 
 
 class LatestReference(ReferenceSource[None]):
-    """Gives the reference that was put in last: the way in for sliders, pendants and other programs.
+    """Gives the latest reference that was set by `put`, for sliders, teach pendants and other programs.
 
     `put` may be called from another thread; the loop takes the latest whole reference at its next tick.
     """
@@ -67,7 +67,7 @@ class LatestReference(ReferenceSource[None]):
 
     @property
     def latest(self) -> Reference:
-        """What was put in last; change it with `dataclasses.replace` and put it back."""
+        """The latest reference; change it with `dataclasses.replace` and pass it to `put`."""
         return self._latest
 
     def init(self, estimate: Estimate) -> None:

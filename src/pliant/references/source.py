@@ -68,11 +68,11 @@ class Started(NamedTuple):
 
 
 class TrajectorySource(ReferenceSource[Started]):
-    """Plays the motions of one or several frames from the moment the loop starts.
+    """References of the motions of one or several frames, from the start of the loop.
 
     Args:
         motions: the most important frame first.
-        posture: (n,) joint configuration over time that goes with them, rad; None for none.
+        posture: (n,) joint configuration over time, rad; None for none.
         phase: name of the phase in every reference.
     """
 

@@ -1,9 +1,8 @@
-"""A tool that goes down to a surface, presses, follows a path, lets go and leaves: the phases of such a task, with its
-posture.
+"""Phases of a task on a surface with their posture: approach, press, follow a path, release, leave.
 
-The surface is the believed one. Contact is looked for along its normal; where it is found, the whole path is lifted or
-lowered along the normal by that much. Position, orientation, task axes and the desired force turn with the normal, in
-the reference and at every node of a preview.
+The surface is the believed one. Contact is searched along its normal; the whole path is then shifted along the normal
+to the contact point. Position, orientation, task axes and the desired force turn with the normal, in the reference and
+at every node of a preview.
 """
 
 from __future__ import annotations
@@ -30,12 +29,12 @@ from pliant.robot import Robot
 from pliant.spatial import Array
 
 _EASE = 0.2  # s from rest to the speed of the approach
-_WAIT = 0.5  # s at the end of the search before it is given up
+_WAIT = 0.5  # s of waiting at the end of the search
 
 
 @dataclass(frozen=True)
 class SurfaceTaskSettings:
-    """What comes before and after the path, and how the arm goes with it.
+    """Settings of approach and retreat, and of the posture.
 
     Raises:
         ConfigError: on construction, when a value is not above zero, or names are not five different ones.
@@ -44,9 +43,9 @@ class SurfaceTaskSettings:
     stand_off: float = 0.05
     """m over the surface, where the task starts and ends"""
     approach_speed: float = 0.05
-    """m/s towards the surface until contact is felt"""
+    """m/s towards the surface until contact"""
     search: float = 0.03
-    """m above and below the believed surface within which contact is looked for"""
+    """m above and below the believed surface within which contact is searched"""
     press: float = 0.5
     """s in which the first force of the path is reached"""
     release: float = 0.2
@@ -54,7 +53,8 @@ class SurfaceTaskSettings:
     leave: float = 0.5
     """s in which the tool is lifted at the end"""
     spins: bool = False
-    """whether the tool may turn about its own axis: what suits the arm; else its x axis follows the path's heading"""
+    """whether the rotation about the tool's own axis is free and chosen to suit the arm; else its x axis follows the
+    path's heading"""
     period: float = 0.04
     """s between samples of the posture"""
     names: tuple[str, str, str, str, str] = ("approach", "press", "follow", "release", "leave")
@@ -76,7 +76,7 @@ class SurfaceTaskSettings:
 
 @dataclass(frozen=True)
 class SurfaceTask:
-    """A task on a surface, ready to be played."""
+    """A task on a surface, ready to run."""
 
     robot: Robot
     frame: str
@@ -97,12 +97,12 @@ class SurfaceTask:
 
     @property
     def longest(self) -> float:
-        """s until the tool has left at the latest; a run that found no contact has failed before."""
+        """s until the tool has left at the latest; without contact a run fails earlier."""
         first = self.phases[0]
         return self.duration - self.begins[self.phases[1].name] + first.patience
 
     def source(self, lookahead: Lookahead | None = None) -> PhasedSource:
-        """References of the task. Its phases, and so what it says, do not depend on who asks for a preview."""
+        """References of the task. Phases and references do not depend on the preview."""
         R = self.phases[0].rotation
         assert R is not None
         return PhasedSource(self.robot, self.frame, self.phases, R.at(0.0).rotation, lookahead, self.start)
@@ -127,7 +127,7 @@ def surface_task(
         nominal: (n,) rad, posture that the redundancy drifts to; None: the start that was found.
 
     Raises:
-        UnreachableError: no branch leads along the whole task; says where it ends and by how much it falls short.
+        UnreachableError: no branch leads along the whole task; with the place and size of the error.
         RobotError: a frame that the robot does not have.
     """
     chosen = settings or SurfaceTaskSettings()

@@ -19,7 +19,7 @@ class TaskPhase:
 
     name: str
     motion: Trajectory
-    """(3,) m; what it is measured from says `anchor`"""
+    """(3,) m, relative to `anchor`"""
     anchor: Anchor = "world"
     """"world": absolute; "begin": from where the reference was when the phase began; "touch": from where the frame was
     when the last phase in which `touches` is new began; "surface": absolute, but lifted along the normal of `axes` by
@@ -37,11 +37,12 @@ class TaskPhase:
     axes: Turning | None = None
     """R_world_task, whose third column is the surface's outward normal; None: the world's axes"""
     posture: Trajectory | None = None
-    """(n,) rad that goes with it; None: that of the source"""
+    """(n,) rad, posture; None: that of the source"""
     patience: float = math.inf
-    """s after which a phase that ends on contact is a failure"""
+    """s, timeout of a phase that ends on contact; the run then fails"""
     within: float = math.inf
-    """m, along the normal, that contact may be off where the next phase, if it is anchored to the surface, begins"""
+    """m, largest distance along the normal between contact and the believed surface, if the next phase is anchored to
+    the surface"""
 
     def __post_init__(self) -> None:
         if self.motion.size != 3:

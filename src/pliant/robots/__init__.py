@@ -1,4 +1,5 @@
-"""The catalogue of robots. Own ones are package data; others need example-robot-data or robot_descriptions."""
+"""The catalogue of robots. Pliant's own robots are package data; others need example-robot-data or
+robot_descriptions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a name or a file to everything that a robot is loaded with: joints locked, home, flange and elbow found."""
+"""Assembles a robot from a name or a file: locked joints, home, flange and elbow."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def assemble(
     home: npt.ArrayLike | str | None,
     rotors: Rotors | None,
 ) -> Assembly:
-    """Reads a robot and settles what its file leaves open. Arguments and errors: those of `Robot.load`."""
+    """Reads a robot and chooses what its file does not define. Arguments and errors: those of `Robot.load`."""
     entry = CATALOGUE.get(source)
     path = locate(source)
     standing = entry.locked if entry is not None else {}
@@ -57,7 +57,7 @@ def assemble(
         robot.model, robot.visual, robot.home = lock(robot.name, robot.model, robot.visual, robot.home, joints)
     notes, robot.faults = check_inertia(robot.model, path)
     robot.notes += tuple(notes)
-    if entry is not None and entry.home:  # then nobody asks for zero
+    if entry is not None and entry.home:  # zero is then not needed
         robot.notes = tuple(note for note in robot.notes if not note.startswith("zero lies outside"))
     _add_arm_frames(robot, entry)
     _settle_home(robot, None if isinstance(home, str) else home)
@@ -83,7 +83,7 @@ def _whole(description: Description, entry: CatalogueEntry | None, path: Path, k
 
 
 def _settle_rotors(model: pin.Model, entry: CatalogueEntry | None, asked: Rotors | None) -> str:
-    """Sets the motors' inertia. Returns where it comes from; "" if nobody says one."""
+    """Sets the motors' inertia. Returns its source; "" if none is given."""
     if asked is not None:
         set_rotors(model, asked)
         return RULE if asked == "assumed" else "argument"
@@ -96,7 +96,7 @@ def _settle_rotors(model: pin.Model, entry: CatalogueEntry | None, asked: Rotors
 def _stated_home(
     description: Description, entry: CatalogueEntry | None, path: Path, keyframe: str | None
 ) -> tuple[Array, str, list[str]]:
-    """Home of all joints, where it comes from ("" if nobody says one), and what there is to say."""
+    """Home of all joints, its source ("" if none is given), and notes."""
     model, homes = description.model, description.homes
     if keyframe is not None and keyframe not in homes:
         raise ConfigError(f"{path} has no keyframe {keyframe!r} to be the home; {options(homes, keyframe)}")
@@ -145,7 +145,7 @@ def _settle_home(robot: Assembly, home: npt.ArrayLike | None) -> None:
         robot.home, down = bent_home(robot.model, arm)
         robot.home_from = f"searched: bent, away from singularities{', flange down' if down else ''}"
         aim = "" if down else ", no pose with the flange down was found"
-        robot.notes += (f"nobody says a home: {np.round(robot.home, 2).tolist()} was searched for{aim}",)
+        robot.notes += (f"no home is given: {np.round(robot.home, 2).tolist()} was searched for{aim}",)
 
 
 def _checked(robot: Assembly, home: npt.ArrayLike) -> Array:

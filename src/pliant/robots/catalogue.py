@@ -1,4 +1,4 @@
-"""The robots that can be loaded by name, with what their files do not say. Limits are those of the named source."""
+"""The robots that can be loaded by name, with data that their files lack. Limits are those of the named source."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ class CatalogueEntry:
     rotors: Rotors | None = None
     """the motors' inertia, of all joints of the file; None: that of the file"""
     rotors_from: str = RULE
-    """where it comes from"""
+    """its source"""
     home: tuple[float, ...] = ()
     """rad, all joints of the file; empty: that of the file, or searched"""
     contact_radius: Mapping[str, float] = field(default_factory=dict)
     """frame → m"""
     flange: str = ""
-    """frame of the file that is the flange; empty: it is called so, or guessed"""
+    """frame of the file that is the flange; empty: the frame `flange`, or the end of the arm"""
     locked: Mapping[str, float] = field(default_factory=dict)
-    """joint → rad or m: fingers and the like"""
+    """joint → rad or m: joints that are locked by default, such as fingers"""
 
     @property
     def own(self) -> bool:
-        """Whether pliant brings the file."""
+        """Whether the file is part of pliant."""
         return self.package == "pliant"
 
 
@@ -80,7 +80,7 @@ _OWN = (
     CatalogueEntry(
         "ur5e",
         "Universal Robots UR5e, 6 joints; kinematics, masses, inertia, torques and speeds as the maker publishes them;"
-        " the elbow at ±180°, as far as the shoulder lets it; assumed rotors",
+        " the elbow at ±180°, its range beside the upper arm; assumed rotors",
         "ur5e.urdf",
         rotors="assumed",
         home=_UR_HOME,

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 _LEAST = 2
-"""joints that an arm has at least"""
+"""least number of joints of an arm"""
 
 
 @dataclass(frozen=True)

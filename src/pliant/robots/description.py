@@ -1,4 +1,4 @@
-"""What reading a robot file gives: a rigid-body model of one-degree-of-freedom joints, and what there is to say."""
+"""Result of reading a robot file: a rigid-body model of one-degree-of-freedom joints, and notes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pliant.errors import RobotError
 from pliant.spatial import Array
 
 UNLIMITED = 1e3
-"""rad or m: a joint range wider than this is no range"""
+"""rad or m: a wider joint range counts as unlimited"""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Description:
     welded: frozenset[str] = frozenset()
     """locked joints that had to go before the model could be made: they stay where the file puts them"""
     notes: tuple[str, ...] = ()
-    """what was assumed, changed or left out, in sentences"""
+    """sentences about what was assumed, changed or left out"""
 
 
 def free_name(wanted: str, taken: Collection[str]) -> str:
@@ -54,11 +54,11 @@ def set_limits(model: pin.Model, at: int, lower: float, upper: float) -> None:
 
 
 def is_revolute(model: pin.Model, joint: int) -> bool:
-    """Whether a joint turns; the others slide."""
+    """Whether a joint is revolute; the others are prismatic."""
     return not str(model.joints[joint].shortname()).startswith("JointModelP")  # JointModelPX, JointModelPrismatic…
 
 
 def require_movement(model: pin.Model, source: object) -> None:
-    """Raises RobotError if nothing in the robot moves."""
+    """Raises RobotError if the robot has no movable joint."""
     if model.nv == 0:
         raise RobotError(f"{source} has no joint that moves: a robot needs at least one revolute or prismatic joint")

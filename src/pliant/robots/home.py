@@ -1,4 +1,4 @@
-"""A comfortable configuration for an arm of which nobody says one: bent, tool down, away from singularities.
+"""A default home configuration for an arm without one: bent, tool down, away from singularities.
 
 Poses drawn in the inner part of the joints' ranges start an inverse kinematics towards a place in front of the base;
 the best conditioned of what it reaches is the home. The draws are seeded: the same file gives the same home.
@@ -89,7 +89,7 @@ def _reach_down(model: pin.Model, data: pin.Data, arm: Arm, q: Array, low: Array
         pose = data.oMf[arm.flange]
         turn = np.cross(pose.rotation[:, 2], -up)
         if pose.rotation[:, 2] @ up > 0.99:
-            turn = np.array(pose.rotation[:, 0])  # exactly the wrong way round: any turn helps
+            turn = np.array(pose.rotation[:, 0])  # exactly opposite: any rotation helps
         error = np.concatenate([target - pose.translation, turn])
         if np.linalg.norm(error) < _TOLERANCE and pose.rotation[:, 2] @ up < 0.0:
             return q

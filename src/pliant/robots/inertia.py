@@ -1,4 +1,4 @@
-"""Links whose mass or inertia no body can have, found before a simulation stumbles over them."""
+"""Checks that masses and inertias of links are physically possible, before a simulation fails."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ TINY = 1e-6
 """kg, and kg m² about each axis: what a massless robot is given so that its kinematics can be used"""
 _NOTHING = 1e-12
 _LATE = 7e-3
-"""s: period and delays of a robot of today"""
+"""s: typical period plus delays of a robot"""
 _LATE_SHARE = 0.42
 """largest K T² / J of a critically damped loop"""
 _ASKED = 25.0
-"""N·m/rad; a tool of 0.2 m wants as much"""
+"""N·m/rad; rotational stiffness for a tool of 0.2 m"""
 
 
 def check_inertia(model: pin.Model, source: object) -> tuple[list[str], tuple[str, ...]]:
-    """Looks for joints that nothing resists, and for inertias that no body has. Gives a massless robot a tiny one.
+    """Finds joints without inertia, and inertias that are not physically possible. Gives a massless robot a tiny mass.
 
     Args:
         model: the robot; changed where nothing in it has mass.
@@ -58,10 +58,11 @@ def check_inertia(model: pin.Model, source: object) -> tuple[list[str], tuple[st
 
 
 def small_inertia(model: pin.Model, home: Array) -> list[str]:
-    """What there is to say about joints that turn so easily that the loop's lateness bounds the stiffness about them.
+    """Notes about joints with so little inertia that the delay of the loop bounds the stiffness about them.
 
-    A critically damped loop on an inertia J, all of it T late, is at its limit of stability with K = 0.42 J / T²: there
-    its crossover, 2.06 √(K/J), times T is its phase margin of 76°. J is what the joint feels with the others free.
+    A critically damped loop on an inertia J, with a total delay T, is at its limit of stability with K = 0.42 J / T²:
+    there its crossover, 2.06 √(K/J), times T is its phase margin of 76°. J is what the joint feels with the others
+    free.
     """
     inverse = np.linalg.inv(_mass_matrix(model, home))
     found: list[tuple[str, float]] = []
@@ -106,7 +107,7 @@ def _carried(model: pin.Model, index: int) -> str:
 
 
 def _fault(moments: Array) -> str | None:
-    """What is wrong with principal moments of inertia (3,), kg m², ascending."""
+    """The fault of principal moments of inertia (3,), kg m², ascending."""
     small, middle, large = (float(m) for m in moments)
     if small < -1e-9:
         return f"the principal moment of inertia {small:.3g} kg m², which is negative"

@@ -1,4 +1,5 @@
-"""What a tree of hinges and slides cannot represent is refused by name; what plays no part is said."""
+"""Checks of an MJCF: content that a tree of hinges and slides cannot represent is refused by name; ignored content is
+noted."""
 
 from __future__ import annotations
 
@@ -30,7 +31,7 @@ def check_joints(compiled: mujoco.MjModel, path: Path, locked: Collection[str]) 
 
 
 def check_finite(compiled: mujoco.MjModel, path: Path) -> None:
-    """Raises RobotError for a number that is none: MuJoCo compiles them."""
+    """Raises RobotError for a number that is not finite, which MuJoCo would compile."""
     for what, values in (
         ("gravity", compiled.opt.gravity),
         ("the place of a body", compiled.body_pos),
@@ -49,7 +50,7 @@ def check_finite(compiled: mujoco.MjModel, path: Path) -> None:
 
 
 def refuse_unread(compiled: mujoco.MjModel, path: Path) -> None:
-    """Raises RobotError for what MuJoCo has and a rigid-body tree has not."""
+    """Raises RobotError for features of MuJoCo that a rigid-body tree does not have."""
     if compiled.nflex:
         raise RobotError(f"{path}: {compiled.nflex} deformable bodies (flex) cannot be part of a robot; remove them")
     tied = [compiled.tendon(t).name or f"number {t + 1}" for t in np.flatnonzero(compiled.tendon_armature)]
@@ -58,7 +59,7 @@ def refuse_unread(compiled: mujoco.MjModel, path: Path) -> None:
 
 
 def notes_on_units(compiled: mujoco.MjModel, tree: Tree) -> list[str]:
-    """Ranges and lengths that look like those of another unit; MuJoCo takes them as they are."""
+    """Notes about ranges and lengths that seem to be in another unit; MuJoCo accepts them."""
     notes: list[str] = []
     wide, narrow = list[str](), list[str]()
     for joint, index in tree.joints.items():
@@ -85,7 +86,7 @@ def _far(compiled: mujoco.MjModel, body: int) -> bool:
 
 
 def notes_on_forces(compiled: mujoco.MjModel, tree: Tree) -> list[str]:
-    """What of the file's forces plays no part."""
+    """Notes about forces of the file that are ignored."""
     notes: list[str] = []
     names = [(joint, tree.model.names[index]) for joint, index in tree.joints.items()]
     dof = compiled.jnt_dofadr
@@ -93,19 +94,17 @@ def notes_on_forces(compiled: mujoco.MjModel, tree: Tree) -> list[str]:
         name for joint, name in names if compiled.dof_damping[dof[joint]] or compiled.dof_frictionloss[dof[joint]]
     ]
     if damped:
-        notes.append(
-            f"joint damping and friction of the file play no part ({', '.join(damped)}): say them in the plant"
-        )
+        notes.append(f"joint damping and friction of the file are ignored ({', '.join(damped)}): set them in the plant")
     sprung = [name for joint, name in names if compiled.jnt_stiffness[joint]]
     if sprung:
-        notes.append(f"joint springs of the file play no part ({', '.join(sprung)})")
+        notes.append(f"joint springs of the file are ignored ({', '.join(sprung)})")
     at_joints = {a for joint in range(compiled.njnt) for a in actuators_of(compiled, joint)}
     if len(at_joints) < compiled.nu:
-        notes.append(f"{compiled.nu - len(at_joints)} actuators of the file act on no joint and play no part")
+        notes.append(f"{compiled.nu - len(at_joints)} actuators of the file act on no joint and are ignored")
     if compiled.opt.density > 0.0 or compiled.opt.viscosity > 0.0:
-        notes.append("the file's medium (density, viscosity) plays no part")
+        notes.append("the file's medium (density, viscosity) is ignored")
     if np.any(compiled.body_gravcomp):
-        notes.append("the file's gravity compensation (gravcomp) plays no part: say it in the plant")
+        notes.append("the file's gravity compensation (gravcomp) is ignored: set it in the plant")
     if compiled.ntendon:
-        notes.append(f"{compiled.ntendon} tendons of the file play no part")
+        notes.append(f"{compiled.ntendon} tendons of the file are ignored")
     return notes

@@ -1,4 +1,5 @@
-"""Equalities of an MJCF: what binds joints or bodies that move is refused by name, what is locked no longer counts."""
+"""Equalities of an MJCF: couplings of joints or bodies that move are refused by name; those of locked joints are
+ignored."""
 
 from __future__ import annotations
 
@@ -37,7 +38,7 @@ def _check_joint_coupling(compiled: mujoco.MjModel, path: Path, locked: Collecti
 
 
 def _check_tie(compiled: mujoco.MjModel, path: Path, locked: Collection[str], index: int) -> None:
-    """A tie between bodies or tendons counts as long as a joint that it binds is free."""
+    """An equality between bodies or tendons is refused if one of its joints is free."""
     free = [name for name in (joint_name(compiled, j) for j in _tied_joints(compiled, index)) if name not in locked]
     if not free:
         return

@@ -10,7 +10,7 @@ from pliant.spatial import Array
 
 
 def torque_limits(compiled: mujoco.MjModel, tree: Tree) -> tuple[Array, list[str]]:
-    """Largest torque (N·m) or force (N) of each joint of the model, and what there is to say about it.
+    """Largest torque (N·m) or force (N) of each joint of the model, and notes about it.
 
     An actuator gives gear · forcerange; a motor without one, gear · gain · ctrlrange. Several actuators at a joint add
     up. Where a range is not symmetric the smaller side counts. Infinite where the file limits nothing.

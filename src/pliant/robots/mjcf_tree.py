@@ -24,7 +24,7 @@ _SINGLE = (_HINGE, int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 @dataclass
 class Tree:
-    """A rigid-body model under construction, and where everything of the file went."""
+    """A rigid-body model under construction, with maps from the elements of the file to those of the model."""
 
     model: pin.Model
     joints: dict[int, int] = field(default_factory=dict[int, int])
@@ -134,7 +134,7 @@ def _add_site(tree: Tree, compiled: mujoco.MjModel, site: int) -> None:
 
 
 def _unique(tree: Tree, name: str, kind: str) -> str:
-    """A frame name that nothing else has; says so where the file's own name was taken."""
+    """A unique frame name; adds a note if it differs from the file's name."""
     free = name if name not in tree.names else free_name(f"{name}_{kind}", tree.names)
     if free != name:
         tree.notes.append(f"the frame of {kind} {name!r} is called {free!r}: a joint or body has its name already")

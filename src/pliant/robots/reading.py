@@ -1,4 +1,4 @@
-"""Reads a robot file, whichever of the two formats it has."""
+"""Reads a robot file, URDF or MJCF."""
 
 from __future__ import annotations
 

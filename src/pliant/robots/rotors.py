@@ -1,8 +1,8 @@
 """The motors' inertia as the joints feel it, in the mass matrix of both models.
 
-A URDF has no field for it, and the wrist of an arm is little without it: 3e-4 kg m² instead of 0.07 and more. What is
-meant is what a joint feels while torques are commanded, less than gear² · rotor where a joint measures its torque and
-feeds it back.
+A URDF has no field for it, and without it the inertia of an arm's wrist is very small: 3e-4 kg m² instead of 0.07 and
+more. The value is the effective inertia at the joint under torque control; with torque feedback it is less than gear² ·
+rotor inertia.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ RotorInertia = Annotated[
     quantity(
         ...,
         "kg m²",
-        "the motors' inertia as every joint feels it; assumed: 0.021 √(torque limit in N·m); none: that of"
+        "the motors' inertia seen at every joint; assumed: 0.021 √(torque limit in N·m); none: that of"
         " the catalogue or of the file",
     ),
 ]

@@ -15,8 +15,8 @@ ToolShape = Literal["sphere", "cylinder", "box"]
 
 @dataclass(frozen=True)
 class ToolBody:
-    """What of a tool touches where it is no ball: a cylinder or a box behind its frame, whose z axis points out of its
-    end face."""
+    """Contact shape of a tool that is not a sphere: a cylinder or a box behind its frame, whose z axis points out of
+    its end face."""
 
     shape: Literal["cylinder", "box"]
     half: tuple[float, float, float]
@@ -42,14 +42,14 @@ class Tool:
     frame: str = "tool"
     """name of the new contact frame, axes parallel to the parent's"""
     shape: ToolShape = "sphere"
-    """what touches: a ball of that radius about the frame, the rod itself, or a block"""
+    """contact shape: a sphere of that radius about the frame, the rod itself, or a block"""
     edges: tuple[float, float] = (0.04, 0.04)
     """m of the end face of a box, along the flange's x and y axes"""
     ball: float | None = None
-    """m, radius of the ball that touches; None: that of the rod"""
+    """m, radius of the spherical tip; None: that of the rod"""
 
     def check(self) -> None:
-        """Raises ConfigError for a shape that there is not, or a size or mass that it cannot have."""
+        """Raises ConfigError for an unknown shape, or an impossible size or mass."""
         if self.shape not in get_args(ToolShape):
             raise ConfigError(f"unknown shape of a tool {self.shape!r}; {options(get_args(ToolShape), self.shape)}")
         if (
@@ -60,7 +60,7 @@ class Tool:
 
     @property
     def body(self) -> ToolBody | None:
-        """What touches; None: a ball."""
+        """The contact shape; None: a sphere."""
         half = 0.5 * self.length
         if self.shape == "cylinder":
             return ToolBody("cylinder", (self.radius, self.radius, half))
@@ -68,7 +68,7 @@ class Tool:
 
     @property
     def reach(self) -> float:
-        """m from the frame to what the tool touches, upright on a face."""
+        """m from the frame to the contact, for a tool upright on a face."""
         if self.shape != "sphere":
             return 0.0
         return self.radius if self.ball is None else self.ball
@@ -90,7 +90,7 @@ def with_rod(
     if visual is None:
         return None
     shown = pin.GeometryModel(visual)
-    # With its frame: pinocchio looks it up when joints are locked, and reads past the end without one.
+    # With its frame: pinocchio looks it up when joints are locked, and reads past the end of an array without one.
     shape = coal.Box(*tool.edges, tool.length) if tool.shape == "box" else coal.Cylinder(tool.radius, tool.length)
     rod = pin.GeometryObject(f"{tool.frame}_rod", carrier.parentJoint, frame, middle, shape)
     rod.meshColor = np.array([0.75, 0.77, 0.80, 1.0])

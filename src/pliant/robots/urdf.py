@@ -1,4 +1,4 @@
-"""Reads a URDF: checked as text first, so that what is wrong has a name; then pinocchio builds the model."""
+"""Reads a URDF: the text is checked first, for clear messages; then pinocchio builds the model."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _visual(model: pin.Model, text: str, path: Path) -> pin.GeometryModel | None
     try:
         return pin.buildGeomFromUrdfString(model, text, pin.GeometryType.VISUAL, package_dirs=folders)
     except (ValueError, RuntimeError):
-        return None  # meshes that are not there: the robot still works, drawn as a stick figure
+        return None  # missing meshes: the robot still works, drawn as a stick figure
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Checks of a URDF's numbers: inertia, axes, limits, lengths. What cannot be is refused, what is odd is said."""
+"""Checks of a URDF's numbers: inertia, axes, limits, lengths. Impossible values are refused, unusual ones noted."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SIZES["capsule"] = _SIZES["cylinder"]
 
 
 def check_numbers(root: Element, path: Path, locked: Collection[str]) -> list[str]:
-    """What there is to say about a URDF's numbers. Raises RobotError for one that makes no sense."""
+    """Notes about a URDF's numbers. Raises RobotError for an impossible one."""
     notes: list[str] = []
     for link in root.findall("link"):
         where = f"{path}: link {link.get('name')!r}"
@@ -86,7 +86,7 @@ def _check_inertial(link: Element, where: str) -> None:
 
 
 def _drop_flat_shapes(link: Element) -> list[str]:
-    """Shapes that cannot be drawn are taken out and named."""
+    """Removes shapes that cannot be drawn, with a note."""
     notes: list[str] = []
     for kind in ("visual", "collision"):
         for shape in link.findall(kind):

@@ -1,4 +1,4 @@
-"""What a URDF may say in a way that pinocchio does not take: put into words that it does, and said."""
+"""Rewrites content of a URDF that pinocchio does not accept, with a note for each change."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOVING = ("revolute", "continuous", "prismatic")
 
 @dataclass
 class Repairs:
-    """What was changed."""
+    """The changes."""
 
     limits: dict[str, tuple[float, float]] = field(default_factory=dict[str, tuple[float, float]])
     """joint → its limits, where the changed file does not hold them"""
@@ -100,7 +100,7 @@ def _separate_names(root: Element, done: Repairs) -> None:
 
 
 def _find_meshes(root: Element, path: Path, done: Repairs) -> None:
-    """Mesh paths become absolute; meshes that are not there are not drawn."""
+    """Makes mesh paths absolute; missing meshes are not drawn."""
     folders = [str(folder) for folder in path.resolve().parents] + os.environ.get("ROS_PACKAGE_PATH", "").split(":")
     missing: list[str] = []
     for link in root.findall("link"):
@@ -117,7 +117,7 @@ def _find_meshes(root: Element, path: Path, done: Repairs) -> None:
                 mesh.set("filename", str(found))
     if missing:
         more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
-        done.notes.append(f"meshes that are not there are not drawn: {missing[0]}{more}")
+        done.notes.append(f"missing meshes are not drawn: {missing[0]}{more}")
 
 
 def _find(name: str, folders: list[str]) -> Path | None:

@@ -1,4 +1,4 @@
-"""Renders the job in a folder. Runs as a process of its own (see snapshot.py) and needs nothing of pliant."""
+"""Renders the job in a folder. Runs as a process of its own (see snapshot.py) and imports nothing from pliant."""
 
 import sys
 from pathlib import Path

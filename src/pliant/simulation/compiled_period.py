@@ -24,7 +24,7 @@ class CompiledPeriod:
 
     Args:
         model: compiled.
-        touches: what can touch, and the sensors.
+        touches: contact frames and sensors.
         substeps: physics steps in a period.
         coriolis: whether the robot compensates its bias forces at every step.
         limit: (n,) N·m.
@@ -78,13 +78,13 @@ class CompiledPeriod:
         self._touching: dict[int, frozenset[str]] = {}
 
     def step(self, world: World, torque: Array) -> tuple[Array, int]:
-        """Holds a torque (n,) for a period. Returns what came of it (`size`,), for `keep`, and a bit for each frame
-        that touches; -1: a joint is too fast."""
+        """Holds a torque (n,) for a period. Returns its outcome (`size`,), for `keep`, and a bit for each frame in
+        contact; -1: a joint is too fast."""
         out = np.empty(self.size)
         return out, self.core.step(world.data, torque, self.rows(world.pushes), out)
 
     def keep(self, world: World, out: Array, mask: int) -> None:
-        """Writes a period's outcome (`size`,) and what touches into the world."""
+        """Writes a period's outcome (`size`,) and the contacts into the world."""
         n = self.n
         world.torque = out[2 * n : 3 * n]
         world.wrenches = dict(zip(self.contacts, out[3 * n : self._felt].reshape(-1, 6), strict=True))
@@ -99,14 +99,14 @@ class CompiledPeriod:
         return dict(zip(self.sensors, out[self._felt :].reshape(-1, 6), strict=True))
 
     def rows(self, pushes: Iterable[Push]) -> list[PushRow]:
-        """Pushes as compiled code takes them."""
+        """Pushes in the format of the compiled code."""
         return (
             [(self._model.site(p.frame).id, p.force, p.start, p.start + p.duration) for p in pushes] if pushes else []
         )
 
 
 def compiled_period_of(plant: Any) -> CompiledPeriod | None:
-    """That of a plant whose period can run without Python, with the readings of its sensors told apart by frame."""
+    """The compiled period of a plant that can run without Python, with the readings of its sensors by frame."""
     period = getattr(plant, "compiled", None)
     if not isinstance(period, CompiledPeriod) or len(set(period.sensors)) < len(period.sensors):
         return None

@@ -22,7 +22,7 @@ from pliant.simulation.scene import Scene
 
 @dataclass(frozen=True)
 class WorldParts:
-    """What is put together."""
+    """The parts of a simulated world."""
 
     robot: Robot
     scene: Scene
@@ -32,13 +32,13 @@ class WorldParts:
 
     @property
     def touching_geoms(self) -> Mapping[str, str]:
-        """Geom of the robot that can touch things → the frame at which its contact counts."""
+        """Contact geom of the robot → the frame at which its contact is reported."""
         parts = {f"touch:{frame}": frame for frame in (*self.robot.contact_radius, *self.robot.contact_bodies)}
         return parts | {f"along:{link.start}": link.start for link in self.links}
 
     @property
     def tools(self) -> frozenset[str]:
-        """Those of these geoms that touch with several points."""
+        """The geoms with several contact points."""
         return frozenset(f"touch:{frame}" for frame in self.robot.contact_bodies)
 
     def compile(self, physics_step: float, pairs: Sequence[PairOfGeoms]) -> mujoco.MjModel:
@@ -46,7 +46,7 @@ class WorldParts:
 
         Args:
             physics_step: s.
-            pairs: geoms that can touch, with how they feel to each other.
+            pairs: pairs of geoms in contact, with their contact properties.
 
         Raises:
             ConfigError: MuJoCo cannot build it, or the step is too long for a contact.
@@ -54,7 +54,8 @@ class WorldParts:
         if self.tools and self.scene.contact == "mujoco":
             frame, body = next(iter(self.robot.contact_bodies.items()))
             raise ConfigError(
-                f"tool {frame!r} is a {body.shape}, whose points share a stiffness, which MuJoCo's contacts cannot: set"
+                f"tool {frame!r} is a {body.shape}, whose contact points share a stiffness, which MuJoCo's"
+                " contacts do not support: set"
                 " contact = 'explicit'"
             )
         spec = spec_from_robot(self.robot)
@@ -109,7 +110,8 @@ class WorldParts:
 
 
 def _add_body(spec: mujoco.MjSpec, frame: str, body: ToolBody, seen: bool) -> None:
-    """What of a tool touches, behind its frame. Args: seen: whether it is drawn; the robot's looks show it already."""
+    """The contact shape of a tool, behind its frame. Args: seen: whether it is drawn; the robot's visual shapes show it
+    already."""
     site = spec.site(frame)
     R = np.zeros(9)
     mujoco.mju_quat2Mat(R, np.asarray(site.quat, dtype=np.float64))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Push:
-    """A constant force on a frame's origin for a while."""
+    """A constant force on a frame's origin for a limited time."""
 
     frame: str
     force: tuple[float, float, float]

@@ -11,9 +11,9 @@ _NOTHING = 1e-9  # N·m; less is rounding
 
 
 def holding_torque(model: mujoco.MjModel, data: mujoco.MjData, n: int, limit: Array) -> Array:
-    """What the joints have to give so that nothing of the robot accelerates, (n,) N·m.
+    """Joint torques for zero acceleration of the robot, (n,) N·m.
 
-    It carries the weight that nothing else compensates, and what contacts and stops press with.
+    They balance the weight that is not compensated otherwise, and the forces of contacts and stops.
 
     Args:
         model: compiled; the robot's n joints come first.

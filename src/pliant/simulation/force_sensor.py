@@ -14,7 +14,7 @@ from pliant.spatial import Array, cross, symmetric
 
 @dataclass(frozen=True)
 class ForceSensor:
-    """Feels the contact at its frame plus the weight and inertia of what it carries.
+    """Measures the contact wrench at its frame plus weight and inertia of its load.
 
     With mass 0 it reads the contact wrench alone, as a real sensor does after perfect tool compensation.
     """
@@ -32,7 +32,7 @@ class ForceSensor:
 def sensor_reading(
     model: mujoco.MjModel, data: mujoco.MjData, sensor: ForceSensor, site: int, felt: Iterable[tuple[int, Array]]
 ) -> Array:
-    """What a sensor says, (6,) at its frame and in its axes.
+    """Reading of a sensor, (6,) at its frame and in its axes.
 
     Args:
         model: compiled.
@@ -81,7 +81,7 @@ def sensor_readings(
         model, data: of MuJoCo.
         sensors: to be read.
         sites: frame → its site.
-        felt: sensor → frames whose contacts it feels.
+        felt: sensor → frames whose contacts it measures.
         wrenches: frame → true contact wrench (6,).
     """
     readings: dict[str, Array] = {}

@@ -1,4 +1,4 @@
-"""What the joints do by themselves, beside the torque that is sent."""
+"""Joint torques of damping, friction and compensation, in addition to the torque that is sent."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pliant.interfaces import Compensation
 
 @dataclass(frozen=True)
 class JointEffects:
-    """What the joints do by themselves. Damping and friction are scalars or (n,)."""
+    """Torques of the joints in addition to the torque that is sent. Damping and friction are scalars or (n,)."""
 
     friction: float | tuple[float, ...] = 0.0
     """N·m of dry friction"""
     damping: float | tuple[float, ...] = 0.0
     """N·m s/rad"""
     compensation: Compensation = "none"
-    """what the robot's own controller adds, invisibly, to the torque that is sent"""
+    """what the robot's own controller adds to the torque that is sent, without reporting it"""
 
     def __post_init__(self) -> None:
         for name in ("friction", "damping"):

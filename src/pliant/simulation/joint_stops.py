@@ -6,8 +6,9 @@ inertia Â,
     τ = −(K x + B ẋ + m ẍ)      x beyond the limit, τ never pulls
     solref = (−K Â (1−d), −B Â (1−d)),   m = d / ((1−d) Â)
 
-so that K and B are exact. m is an inertia of the stop itself. It is felt only beyond the limit, and it lets the physics
-step bear any K on any joint: a wrist of 3e-4 kg m² behind a drive of 40 N·m would need steps of 0.1 ms without it.
+so that K and B are exact. m is an inertia of the stop itself. It acts only beyond the limit, and it makes the physics
+step stable for every K on every joint: a wrist of 3e-4 kg m² behind a drive of 40 N·m would need steps of 0.1 ms
+without it.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ _STEPS_SQUARED = 2.0  # m over K dt²: with B at most critical, K dt² + 2 B dt 
 
 @dataclass(frozen=True)
 class JointStops:
-    """How hard the joints' stops are.
+    """Stiffness and damping of the joints' stops.
 
     K is such that the torque limit alone pushes a joint by `give` beyond its limit.
 
@@ -59,7 +60,7 @@ def apply_stops(model: mujoco.MjModel, robot: Robot, stops: JointStops) -> None:
     Args:
         model: compiled, `timestep` set; the robot's joints by their names.
         robot: for names and torque limits.
-        stops: how hard they are.
+        stops: stiffness and damping.
     """
     joints = [model.joint(name).id for name in robot.joint_names]
     slides = np.array([model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE for joint in joints])

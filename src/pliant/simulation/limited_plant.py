@@ -1,4 +1,4 @@
-"""A plant whose run ends where something passes a limit."""
+"""A plant that ends a run when a limit is exceeded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True)
 class RunLimits:
-    """What must not be passed in truth by one frame or its robot.
+    """Limits of the true motion and force of one frame and its robot.
 
     Raises:
         ConfigError: on construction, when a bound is not above zero or a workspace is empty.
@@ -46,7 +46,8 @@ class RunLimits:
         return bool((place < self.lower).any() or (place > self.upper).any())
 
     def broken(self, truth: Truth, before: Array | None, period: float, torque_limit: Array) -> str:
-        """Which limit is passed, by what, in a few words; empty: none. Args: before: (3,) m, place a period ago."""
+        """The limit that is exceeded, with the value, in a few words; empty: none. Args: before: (3,) m, place a period
+        ago."""
         place = truth.positions[self.frame]
         wrench = truth.wrenches.get(self.frame)
         force = 0.0 if wrench is None else math.sqrt(wrench[:3].dot(wrench[:3]))
@@ -58,7 +59,7 @@ class RunLimits:
             ("torque", share, self.torque, "of a joint's limit"),
         ):
             if value > bound:
-                return f"limits.{name} was passed: {value:.3g} {unit}, {bound:g} is allowed"
+                return f"limits.{name} was exceeded: {value:.3g} {unit}, {bound:g} is allowed"
         if self.outside(place):
             x, y, z = place
             return f"limits.workspace was left: the frame {self.frame!r} was at ({x:.3f}, {y:.3f}, {z:.3f}) m"
@@ -74,7 +75,7 @@ class LimitedState(NamedTuple):
 
 
 class LimitedPlant(Plant[LimitedState]):
-    """Another plant; a step after which a limit is passed raises `RunFailedError`.
+    """A wrapper of a plant; a step that exceeds a limit raises `RunFailedError`.
 
     Args:
         inner: a simulated one, which observes the frame.

@@ -1,4 +1,4 @@
-"""A part of the robot between two frames that can touch things along its length."""
+"""A part of the robot between two frames that makes contact along its length."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ _SAMPLE = """<mujoco><worldbody><geom type="plane" size="1 1 1"/><body pos="0.1 
 
 @functools.cache
 def addresses(names: tuple[str, ...]) -> tuple[int, ...]:
-    """Where functions stand in memory.
+    """Addresses of functions in memory.
 
     Raises:
         RunFailedError: the package has no library, or one without such a function.
@@ -46,24 +46,24 @@ def addresses(names: tuple[str, ...]) -> tuple[int, ...]:
 
 
 def mismatch() -> str:
-    """Why compiled code must not look into MuJoCo's structures: a sentence; empty where it may."""
+    """Why compiled code must not access MuJoCo's structures: a sentence; empty if it may."""
     found = int(mujoco.mj_version())
     if found != _plant.MUJOCO_VERSION:
         return (
-            f"pliant was compiled for MuJoCo {_version(_plant.MUJOCO_VERSION)} and finds {_version(found)}: simulated"
+            f"pliant was compiled for MuJoCo {_version(_plant.MUJOCO_VERSION)} and found {_version(found)}: simulated"
             " robots run in Python, slower; reinstall pliant to compile it anew"
         )
     model = mujoco.MjModel.from_xml_string(_SAMPLE)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data)
     if data.ncon < 2 or not _plant.same_layout(model, data):
-        return "MuJoCo lays its structures out in another way than its headers say: simulated robots run in Python"
+        return "MuJoCo's structures differ from its headers: simulated robots run in Python"
     return ""
 
 
 @functools.cache
 def can_look_inside() -> bool:
-    """Whether compiled code may look into MuJoCo's structures; where it may not, a warning says why, once."""
+    """Whether compiled code may access MuJoCo's structures; if not, a warning gives the reason, once."""
     why = mismatch()
     if why:
         warnings.warn(why, stacklevel=2)

@@ -19,9 +19,10 @@ from pliant.spatial import Array, quaternion
 from pliant.surfaces import CylinderSurface, EdgeSurface, HoleSurface, MeshSurface, SphereSurface
 
 WOOD = (0.78, 0.70, 0.60, 1.0)
-_ENDLESS = 3.0  # m, half length of MuJoCo's cylinder, beyond any arm's reach; more would take the near out of pictures
+# m, half length of MuJoCo's cylinder, longer than an arm's reach; with more, near objects would be clipped in pictures
+_ENDLESS = 3.0
 _FRAME = 1e-3  # m, radius of the ball that carries a mesh's frame; it is not seen and does not touch
-_SEEN_THROUGH = 0.35  # opacity of what the tool works inside of
+_SEEN_THROUGH = 0.35  # opacity of a part with the tool inside
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Part:
 
     name: str
     geometry: CylinderSurface | SphereSurface | MeshSurface | HoleSurface | EdgeSurface
-    """where its surface is; a hollow one (touched from within), a hole, an edge and a mesh need the explicit law"""
+    """its surface; a hollow one (touched from within), a hole, an edge and a mesh need the explicit law"""
     surface: Surface = field(default_factory=Surface)
     length: float = 0.25
     """m, half of what is drawn of a cylinder, an edge or the face round a hole; the contact has no ends (MuJoCo's: none
@@ -53,13 +54,13 @@ class Part:
 
     @property
     def form(self) -> SampledMesh | Solid | None:
-        """Its surface, in its axes, where that is none of MuJoCo's shapes."""
+        """Its surface, in its axes, if MuJoCo does not have that shape."""
         if isinstance(self.geometry, MeshSurface):
             return self.geometry.distance.samples
         return self.geometry.solid if isinstance(self.geometry, HoleSurface | EdgeSurface) else None
 
     def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
-        """Adds the shape that touches (invisible) and one that shows it. Returns the geom that touches."""
+        """Adds the contact shape (invisible) and a visual shape. Returns the contact geom."""
         place = {"pos": self.geometry.origin, "quat": quaternion(self.geometry.rotation)}
         if not isinstance(self.geometry, CylinderSurface | SphereSurface):
             look = _mesh_look(spec, self.name, *_triangles(self.geometry, self.length), place)
@@ -77,7 +78,7 @@ class Part:
     def _round(
         self, spec: mujoco.MjSpec, geometry: CylinderSurface | SphereSurface, place: dict[str, Any]
     ) -> tuple[mujoco.MjsGeom, mujoco.MjsGeom]:
-        """The shape that is seen and the one that touches."""
+        """The visual shape and the contact shape."""
         rod = isinstance(geometry, CylinderSurface)
         kind = mujoco.mjtGeom.mjGEOM_CYLINDER if rod else mujoco.mjtGeom.mjGEOM_SPHERE
         look = spec.worldbody.add_geom(type=kind, size=[geometry.radius, self.length if rod else 0.0, 0.0], **place)
@@ -86,7 +87,7 @@ class Part:
 
 
 def _triangles(geometry: MeshSurface | HoleSurface | EdgeSurface, length: float) -> tuple[Array, Integers]:
-    """Corners (nv, 3) m in the part's axes, and which belong together (nt, 3). Args: length: m, half of it."""
+    """Vertices (nv, 3) m in the part's axes, and triangles (nt, 3). Args: length: m, half of it."""
     if isinstance(geometry, MeshSurface):
         return geometry.distance.triangles.vertices, geometry.distance.triangles.corners
     return hole_triangles(geometry, length) if isinstance(geometry, HoleSurface) else edge_triangles(geometry, length)

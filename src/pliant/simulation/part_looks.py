@@ -1,4 +1,4 @@
-"""Triangles that show a plate with a hole, and an edge."""
+"""Visual meshes of a plate with a hole, and of an edge."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def hole_triangles(hole: HoleSurface, half: float) -> tuple[Array, Integers]:
 
     Args:
         hole: to be shown.
-        half: m, half an edge of the square face round it; at least half as much again as the mouth.
+        half: m, half an edge of the square face round it; at least 1.5 times the radius of the mouth.
     """
     mouth = hole.radius + hole.chamfer
     angles = 2.0 * np.pi * np.arange(_ROUND) / _ROUND

@@ -31,7 +31,7 @@ from pliant.simulation.world import World
 from pliant.spatial import Array, clamp
 
 SPEED_STOP = 2.0
-"""multiple of the joints' speed limits at which a real arm stops"""
+"""multiple of the joints' speed limits at which a real arm would stop"""
 
 
 class MujocoPlant(Plant[World]):
@@ -41,16 +41,16 @@ class MujocoPlant(Plant[World]):
 
     Args:
         robot: the robot; frames with a contact radius can touch the things in the scene.
-        scene: what it can meet.
+        scene: the things around the robot.
         period: control period in s, a whole multiple of `physics_step`. Torques are held constant over it.
         physics_step: s; None: 0.5 ms, or 20 µs where the scene's contacts are explicit forces.
         start: (n,) configuration at the start, rad; None: the robot's home.
         joints: friction, damping and compensation of the joints.
-        stops: how hard the joints' mechanical limits are.
+        stops: stiffness and damping of the joints' mechanical limits.
         sensors: force/torque sensors.
         pushes: disturbances.
-        links: parts of the robot that touch things along their length, beside the frames with a contact radius.
-        observe: more frames whose true pose is to be known; those that touch, sense or are pushed are in any case.
+        links: parts of the robot with contact along their length, in addition to the frames with a contact radius.
+        observe: further frames whose true pose is recorded; contact, sensor and pushed frames are included.
         speed_stop: multiple of the joints' speed limits at which a run stops as failed, as a real arm stops; None:
             it does not.
 
@@ -115,7 +115,8 @@ class MujocoPlant(Plant[World]):
         return self._started(world)
 
     def resume(self, world: World) -> tuple[Measurement, World]:
-        """Goes on where a plant of the same robot and the same things stopped, for example one with another table."""
+        """Continues from the state of a plant with the same robot and the same things, for example one with another
+        table."""
         data = mujoco.MjData(self.model)
         data.qpos[:], data.qvel[:], data.time = world.data.qpos, world.data.qvel, world.data.time
         again = World(data, world.ticks, self._loop.no_wrenches(), frozenset(), world.torque, pushes=world.pushes)
@@ -229,7 +230,7 @@ class MujocoPlant(Plant[World]):
             raise RunFailedError("the simulation diverged: a joint's speed is not a number; use a smaller physics step")
         joint = int(np.argmax(speed / self._fastest))
         raise RunFailedError(
-            f"joint {self.robot.joint_names[joint]} ran at {speed[joint]:.1f} rad/s; the robot stops at"
+            f"joint {self.robot.joint_names[joint]} reached {speed[joint]:.1f} rad/s; the robot stops at"
             f" {self.speed_stop:g} times its speed limit"
         )
 

@@ -1,4 +1,4 @@
-"""How a simulated robot starts, and a control period of it in Python."""
+"""Start of a simulated robot, and a control period in Python."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class PythonPeriod:
         self._read_explicit(world, contacts)
 
     def _follows_state(self, world: World) -> bool:
-        """Whether something besides the held torque changes within a period."""
+        """Whether a torque or force other than the held torque changes within a period."""
         return bool(self._pushes or world.pushes) or self._joints.compensation == "gravity+coriolis"
 
     def read_contacts(self, world: World) -> None:

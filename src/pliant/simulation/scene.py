@@ -1,4 +1,4 @@
-"""What stands around the robot: surfaces and bodies with stiffness and damping in physical units."""
+"""Scene around the robot: surfaces and bodies with stiffness and damping in physical units."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Plane:
         return PlaneSurface.facing(self.normal, self.point)
 
     def add_to(self, spec: mujoco.MjSpec) -> mujoco.MjsGeom:
-        """Adds the half-space (invisible) and a thin plate that shows it. Returns the geom that touches."""
+        """Adds the half-space (invisible) and a thin visual plate. Returns the contact geom."""
         R = frame_with_z_along(self.normal)
         position = np.array(self.point)
         plate = spec.worldbody.add_geom(
@@ -67,7 +67,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Box:
-    """A box that can move, or one that cannot (mass 0)."""
+    """A box, movable or fixed (mass 0)."""
 
     name: str
     size: tuple[float, float, float]
@@ -95,7 +95,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Ball:
-    """A soft ball that can move, or one that cannot (mass 0)."""
+    """A soft ball, movable or fixed (mass 0)."""
 
     name: str
     radius: float
@@ -124,11 +124,11 @@ Thing = Plane | Part | Box | Ball
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything the robot can meet, and which law rules the contacts.
+    """The things around the robot, and the contact law.
 
     Raises:
-        ConfigError: on construction, when two things share a name, the law is unknown, or it cannot do a hollow part
-            or a mesh.
+        ConfigError: on construction, when two things share a name, the law is unknown, or it does not support a hollow
+            part or a mesh.
     """
 
     things: tuple[Thing, ...] = ()
@@ -159,7 +159,7 @@ class Scene:
 
     @property
     def forms(self) -> Mapping[str, SampledMesh | Solid]:
-        """Name of each part that is none of MuJoCo's shapes → its surface."""
+        """Name of each part with a shape that MuJoCo does not have → its surface."""
         parts = [(thing.name, thing.form) for thing in self.things if isinstance(thing, Part)]
         return {name: form for name, form in parts if form is not None}
 
@@ -180,7 +180,7 @@ def fixed_part(
     Args:
         name: of the thing.
         geometry: a plane, cylinder, sphere, hole, edge or mesh.
-        surface: how it feels; None: the defaults of `Surface`.
+        surface: contact properties; None: the defaults of `Surface`.
         extent: m, half sizes of the part of a plane that is drawn; of other parts the first one is `Part.length`.
 
     Raises:

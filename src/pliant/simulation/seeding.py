@@ -10,7 +10,7 @@ import numpy as np
 def generator(seed: int, source: str) -> np.random.Generator:
     """The generator of one source, for example `noise.q`.
 
-    Sources are told apart by name, not by order: switching one off leaves the draws of all others as they were.
+    Sources are identified by name, not by order: switching one off does not change the draws of the others.
 
     Args:
         seed: of the run, not negative.

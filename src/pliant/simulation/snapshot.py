@@ -22,7 +22,7 @@ import numpy as np
 from pliant.spatial import Array
 
 _CHILD = Path(__file__).with_name("_render_child.py")
-_PATIENCE = 120.0  # s for one platform; a driver that never answers counts as none
+_PATIENCE = 120.0  # s for one platform; a driver that does not respond counts as missing
 
 
 @dataclass(frozen=True)

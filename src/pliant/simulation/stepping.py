@@ -1,4 +1,4 @@
-"""How a control period is cut into physics steps."""
+"""Physics steps of a control period."""
 
 from __future__ import annotations
 

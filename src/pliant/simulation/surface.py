@@ -1,4 +1,4 @@
-"""How a thing feels to the touch, in physical units."""
+"""Contact properties of a surface, in physical units."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pliant.errors import ConfigError
 
 @dataclass(frozen=True)
 class Surface:
-    """How a thing feels to the touch.
+    """Contact properties of a surface.
 
     Raises:
         ConfigError: on construction, when a value is negative, not finite, or the stiffness is zero.

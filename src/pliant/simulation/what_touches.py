@@ -1,4 +1,4 @@
-"""Where contacts count, and which sensors feel them."""
+"""Contact frames, and the sensors that measure their contacts."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pliant.simulation.force_sensor import ForceSensor
 
 @dataclass(frozen=True)
 class WhatTouches:
-    """Where contacts count and who feels them."""
+    """Contact frames, and the sensors that measure their contacts."""
 
     frames: Mapping[int, str]
-    """geom → the frame at which its contact counts"""
+    """geom → the frame at which its contact is reported"""
     sites: Mapping[str, int]
     """frame → its site"""
     sensors: tuple[ForceSensor, ...]
     felt: Mapping[ForceSensor, Sequence[str]]
-    """sensor → frames whose contacts it feels"""
+    """sensor → frames whose contacts it measures"""

@@ -21,7 +21,7 @@ class World:
     wrenches: dict[str, Array]
     """frame → (6,) contact wrench of the last physics step, world axes"""
     touching: frozenset[str]
-    """frames and robot parts that touched something in the last physics step"""
+    """frames and robot parts in contact in the last physics step"""
     torque: Array
     """(n,) held over the last period, N·m; at the start what keeps the robot at rest"""
     contacts: ContactState | None = None

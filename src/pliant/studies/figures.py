@@ -1,4 +1,4 @@
-"""Figures of many runs of a case, from what its rows say of themselves."""
+"""Figures of many runs of a case, from the values of its rows."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CaseFigure = Callable[[Case[Any], Sequence[Result]], Mapping[str, "Figure"]]
 
 @dataclass(frozen=True)
 class Drawn:
-    """A metric that is drawn."""
+    """A metric of a figure."""
 
     name: str
     label: str

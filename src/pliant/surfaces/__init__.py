@@ -1,7 +1,7 @@
-"""Where the surface of a part is: signed distance, normal, curvature, and charts in which patterns are drawn.
+"""Surfaces of parts: signed distance, normal, curvature, and charts for patterns.
 
-Plant, estimators, references and predictive controllers share these shapes; how a surface feels to the touch
-(stiffness, damping, friction) is not part of them.
+Plant, estimators, references and predictive controllers share these shapes; contact properties (stiffness, damping,
+friction) are not part of them.
 """
 
 from pliant.surfaces.cylinder import CylinderSurface

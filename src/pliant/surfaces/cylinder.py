@@ -33,7 +33,7 @@ class CylinderSurface(RoundSurface):
         return self._side / self.radius, 0.0
 
     def top(self) -> Array:
-        """Over the origin (under it, in a pipe), as high as the surface is there; +x of an upright cylinder."""
+        """The highest point over the origin (the lowest, in a pipe); +x of an upright cylinder."""
         axis = self.rotation[:, 2]
         up = np.array([0.0, 0.0, 1.0]) - axis * axis[2]
         length = float(np.linalg.norm(up))

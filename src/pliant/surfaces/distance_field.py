@@ -15,9 +15,9 @@ from pliant.surfaces.mesh_file import Triangles
 
 MARGIN = 0.06
 """m round the mesh, within which the distance is sampled"""
-_SAMPLES = 500_000  # if nobody says how fine
+_SAMPLES = 500_000  # default number of samples
 _MOST = 8_000_000  # samples: 64 MB
-_FINEST = 1e-3  # m, if nobody says
+_FINEST = 1e-3  # m, default step
 _BAND = 0.03  # m to each side of the mesh, at least
 _COARSE = 4
 
@@ -33,7 +33,7 @@ class SampledDistance:
         step: m between two samples; None: as fine as 500 000 samples allow, 1 mm at least.
 
     Raises:
-        ConfigError: so fine a grid that it takes more than 64 MB.
+        ConfigError: a grid that takes more than 64 MB.
     """
 
     def __init__(self, triangles: Triangles, step: float | None = None) -> None:

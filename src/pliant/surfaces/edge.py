@@ -24,7 +24,7 @@ class EdgeSurface(SurfaceGeometry):
     """A wedge of material whose edge runs along x: one face is z = 0 where y < 0, the other comes down from it.
 
     The edge may be rounded; then the origin is where the two faces would meet. Inside of the material the normal jumps
-    where both faces are as near.
+    where both faces are equally near.
 
     Raises:
         ConfigError: on construction, when the angle is not from 10° to 170°, or the rounding is below zero.

@@ -1,4 +1,4 @@
-"""What every surface can answer."""
+"""Base class of surfaces."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pliant.spatial import Array, as_vector, exp3
 
 
 class Nearest(NamedTuple):
-    """The place of a surface that is nearest to a point. World axes."""
+    """The point of a surface that is nearest to a given point. World axes."""
 
     distance: float
     """m, negative inside the material"""
@@ -29,7 +29,7 @@ class SurfaceGeometry(ABC):
     """A smooth surface that bounds a solid.
 
     Raises:
-        ConfigError: on construction, when the pose is not one.
+        ConfigError: on construction, when the pose is not valid.
     """
 
     origin: Array
@@ -57,8 +57,7 @@ class SurfaceGeometry(ABC):
 
     @abstractmethod
     def top(self) -> Array:
-        """(3,) m: a place of the surface from which patterns start if nobody says where, the highest one if there is
-        one."""
+        """(3,) m: default origin of patterns, the highest point of the surface if there is one."""
 
     @abstractmethod
     def chart(self, point: Array, along: Array, uv: Array) -> tuple[Array, Array]:
@@ -75,13 +74,13 @@ class SurfaceGeometry(ABC):
         """
 
     def first_axis(self, normal: Array) -> Array:
-        """(3,) unit vector along which patterns lie if nobody says: the surface's x axis, or its y axis where x stands
-        upright. Args: normal: (3,) of the place."""
+        """(3,) unit vector, default direction of patterns: the surface's x axis, or its y axis where x is along the
+        normal. Args: normal: (3,) of the place."""
         return self.rotation[:, 1 if abs(float(self.rotation[:, 0] @ normal)) > 0.95 else 0]
 
     @property
     def described(self) -> str:
-        """What is to be known of how it is represented; empty for a closed form."""
+        """A note about its representation; empty for a closed form."""
         return ""
 
     def normal(self, point: npt.ArrayLike) -> Array:
@@ -94,7 +93,7 @@ class SurfaceGeometry(ABC):
         Args:
             shift: (3,) m, after the turn.
             turn: (3,) rad, rotation vector in world axes.
-            pivot: (3,) m, a place that the turn leaves where it is; None: the surface's origin.
+            pivot: (3,) m, the fixed point of the turn; None: the surface's origin.
         """
         R = exp3(as_vector(turn, 3, "turn"))
         about = self.origin if pivot is None else as_vector(pivot, 3, "pivot")
@@ -112,5 +111,5 @@ class SurfaceGeometry(ABC):
         flat = d - n * float(n @ d)
         length = float(np.linalg.norm(flat))
         if length < 1e-6 * max(float(np.linalg.norm(d)), 1e-12):
-            raise ConfigError(f"direction {d.tolist()} stands upright on the surface: give one that lies along it")
+            raise ConfigError(f"direction {d.tolist()} is normal to the surface: give one that is tangent to it")
         return flat / length

@@ -26,7 +26,7 @@ class HoleSurface(SurfaceGeometry):
     places.
 
     Raises:
-        ConfigError: on construction, when a size is not one, or the bevel is as deep as the hole.
+        ConfigError: on construction, when a size is not valid, or the bevel is as deep as the hole.
     """
 
     radius: float = 0.01

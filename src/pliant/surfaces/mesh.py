@@ -24,7 +24,7 @@ _STEEP = 1e-9
 class MeshSurface(SurfaceGeometry):
     """A mesh, closed or an open shell, concave parts allowed; smoothed between the samples of its distance.
 
-    It can be touched at ridges and in grooves too; a normal that turns within a sample's width is rounded by about
+    Contact is possible at ridges and in grooves too; a normal that turns within a sample's width is rounded by about
     that.
     """
 
@@ -104,7 +104,7 @@ class MeshSurface(SurfaceGeometry):
             if gap < 1e-6:
                 return self.near(place).point
             place = place - np.array([0.0, 0.0, max(gap, 1e-6)])
-        raise ConfigError("over the middle of the mesh there is a hole: say by path.at where the path lies")
+        raise ConfigError("there is a hole over the middle of the mesh: give the place of the path by path.at")
 
     def chart(self, point: Array, along: Array, uv: Array) -> tuple[Array, Array]:
         n = self.near(point).normal

@@ -1,4 +1,4 @@
-"""Triangles of a part from an STL, OBJ or PLY file, checked: what cannot be touched is refused at once."""
+"""Triangles of a part from an STL, OBJ or PLY file, with checks of size, closure and orientation."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def read_mesh(path: str | Path, scale: float = 1.0, outside: npt.ArrayLike | Non
 
     Raises:
         ConfigError: a file that there is not or that holds no triangles, too many of them, sizes in another unit, a
-            shell without `outside`, triangles that look inwards or to both sides.
+            shell without `outside`, triangles that face inwards or to both sides.
     """
     file = Path(path)
     mesh = _loaded(file)
@@ -62,12 +62,12 @@ def read_mesh(path: str | Path, scale: float = 1.0, outside: npt.ArrayLike | Non
     _check_size(file, mesh, scale)
     if not mesh.is_winding_consistent:
         raise ConfigError(
-            f"neighbouring triangles of mesh {file.name} look to different sides: unify its normals (and sew it up) in"
-            " the program that it comes from"
+            f"neighbouring triangles of mesh {file.name} have inconsistent orientation: unify the normals (and close"
+            " the mesh) in the program that it comes from"
         )
     if mesh.is_watertight and mesh.volume < 0.0:
         raise ConfigError(
-            f"the triangles of mesh {file.name} look inwards: turn its normals round in the program that it comes from"
+            f"the triangles of mesh {file.name} face inwards: flip the normals in the program that it comes from"
         )
     if not mesh.is_watertight:
         _turn_outwards(file, mesh, outside)
@@ -83,15 +83,15 @@ def _loaded(file: Path) -> Any:
         raise ConfigError(f"mesh {file.name}: the file must be one of {', '.join(SUFFIXES)}")
     if not file.is_file():
         raise ConfigError(f"no mesh file {file}")
-    import trimesh  # most tasks have no mesh
+    import trimesh  # imported here because most tasks have no mesh
 
     try:
         mesh: Any = trimesh.load(file, force="mesh", process=True)
         triangles = len(mesh.faces)
-    except Exception as error:  # whatever a reader raises over a damaged file
+    except Exception as error:  # any error of the reader with a damaged file
         raise ConfigError(f"mesh {file.name} cannot be read: {told(error)}") from error
     if triangles == 0 or not np.isfinite(mesh.vertices).all():
-        raise ConfigError(f"mesh {file.name} has no triangles, or corners that are no numbers")
+        raise ConfigError(f"mesh {file.name} has no triangles, or vertices that are not finite")
     return mesh
 
 
@@ -110,8 +110,8 @@ def _check_size(file: Path, mesh: Any, scale: float) -> None:
 def _turn_outwards(file: Path, mesh: Any, outside: npt.ArrayLike | None) -> None:
     if outside is None:
         raise ConfigError(
-            f"mesh {file.name} is not closed, so that it has no inside: close it, or say by surface.outside, for"
-            " example surface.outside = [0, 0, 1], which way is out of the material"
+            f"mesh {file.name} is not closed, so that it has no inside: close it, or give the direction out of the"
+            " material, for example surface.outside = [0, 0, 1]"
         )
     way = as_vector(outside, 3, "surface.outside")
     looks = float(np.sum(np.asarray(mesh.face_normals) * np.asarray(mesh.area_faces)[:, None], axis=0) @ way)

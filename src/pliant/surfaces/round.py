@@ -1,4 +1,4 @@
-"""What a cylinder and a sphere share: a radius, and a side on which the material is."""
+"""Common base of cylinder and sphere: a radius, and the side of the material."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A way on a curved surface, laid flat."""
+"""A path on a curved surface, unrolled into a plane."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _FIRST = 0.02  # of the way, which tells its first direction
 
 
 def unrolled(places: Array, normals: Array) -> Array:
-    """(k, 2) m: the way as a pen would draw it on paper that rolls with it without slipping.
+    """(k, 2) m: the path unrolled into a plane.
 
     Lengths along the way are kept, and so is how it bends within the surface. On a plane and a cylinder places
     keep their distances too; on other surfaces, places where two parts of a way meet lie apart by what the surface

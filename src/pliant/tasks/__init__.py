@@ -1,6 +1,6 @@
-"""What is asked of a robot, as data: where, along which path, with which force; and how the world differs from it.
+"""Contact tasks as data: surface, path, force, and the true world.
 
-No code here knows a controller, a simulator or a file format of robots.
+The code here depends on no controller, simulator or robot file format.
 """
 
 from pliant.tasks.files import load_task

@@ -1,4 +1,4 @@
-"""Values that are drawn at random, once a seed."""
+"""Random values, drawn once per seed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pliant.quantity import Range, in_order, quantity
 
 
 class Uniform(Config):
-    """Anything between two values."""
+    """Uniformly distributed between two values."""
 
     uniform: Range = Field(description="lowest and highest value")
 
@@ -37,7 +37,7 @@ class Normal(Config):
 
 
 class OneOf(Config):
-    """One of several values, each as likely."""
+    """One of several values with equal probability."""
 
     choice: tuple[bool, ...] | tuple[float, ...] = Field(min_length=1, description="the values")
 
@@ -80,7 +80,7 @@ def drawn(value: Drawn, rng: np.random.Generator) -> float:
 
 
 def bounds(value: Drawn) -> tuple[float, float]:
-    """Lowest and highest value that can come out; of a normal one ± 3 standard deviations."""
+    """Lowest and highest possible value; of a normal distribution ± 3 standard deviations."""
     if isinstance(value, Uniform):
         return value.uniform
     if isinstance(value, LogUniform):

@@ -1,4 +1,4 @@
-"""What stands between the sensors and the controller, in every study and task."""
+"""Estimation of every study and task: filters, observer, tare."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from pliant.quantity import quantity
 
 
 class Estimation(Config):
-    """What stands between the sensors and the controller."""
+    """Estimation between sensors and controller."""
 
     joint_memory: float | None = quantity(
         None,
         "s",
-        "of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, where a path is polished"
-        " or wiped and in lists of phases that are timed or whose timing is late, else 0",
+        "of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, on paths, and in"
+        " lists of phases that are timed or have delays, else 0",
         ge=0.0,
         le=100.0,
     )
@@ -36,13 +36,13 @@ class Estimation(Config):
     wrench_stiffness: float | None = quantity(
         None,
         "N/m",
-        "believed stiffness with which the motion fills in what that filter is late by; none: the filter alone",
+        "believed stiffness with which the motion compensates the delay of that filter; none: the filter alone",
         gt=0.0,
         le=1e8,
     )
     torque: Literal["sensor", "model"] = Field(
         default="sensor",
-        description="joint torques as the joints' sensors say, or RNEA(q, v, v̇) − τ_ext of the force sensor"
+        description="joint torques from the joints' sensors, or RNEA(q, v, v̇) − τ_ext of the force sensor"
         " ([FFMPC] eq. 37)",
     )
     acceleration_cutoff: float = quantity(
@@ -55,6 +55,6 @@ class Estimation(Config):
     )
     tare: Literal["weight", "bias"] | None = Field(
         default=None,
-        description="what the force sensor reads in the first 20 ms, beyond what is known, counts as an unknown weight"
-        " or as an offset; none: it counts as contact",
+        description="the unexplained reading of the force sensor in the first 20 ms is taken as an unknown weight or as"
+        " an offset; none: as contact",
     )

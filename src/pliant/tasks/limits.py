@@ -1,4 +1,4 @@
-"""What a task must not pass."""
+"""Limits of a task."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class WorkspaceConfig(Config):
 
 
 class Limits(Config):
-    """What must not be passed by the moved frame: a task that asks for more is refused, a run ends there as failed."""
+    """Limits of the moved frame: a task that exceeds them is refused, a run that exceeds them ends as failed."""
 
     force: float | None = quantity(None, "N", "of the contact; none: no limit", gt=0.0)
     speed: float | None = quantity(None, "m/s", "of the frame; none: no limit", gt=0.0)

@@ -1,4 +1,4 @@
-"""The parts of a task. Angles are degrees: they are typed by people."""
+"""The parts of a task. Angles are in degrees, because users type them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _USUAL = SurfaceTaskSettings()
 
 
 class Pose(Config):
-    """Where something stands."""
+    """A pose."""
 
     xyz: Vector = quantity((0.0, 0.0, 0.0), "m", "position")
     rpy: Vector = quantity((0.0, 0.0, 0.0), "deg", "roll, pitch, yaw: about x, then y, then z, each of the fixed axes")
@@ -35,13 +35,13 @@ class Pose(Config):
 
 
 class ToolConfig(Config):
-    """A rigid tool on the flange: a rod that ends in a ball, or a cylinder or a block that touches with all of it."""
+    """A rigid tool on the flange: a rod with a spherical tip, or a cylinder or a block."""
 
     mass: float = quantity(Tool.mass, "kg", "of the tool, known to the controller", ge=0.0, le=100.0)
     length: float = quantity(
         Tool.length,
         "m",
-        "from the flange along its z axis to the middle of the ball, or to the end face",
+        "from the flange along its z axis to the middle of the tip, or to the end face",
         gt=0.0,
         le=2.0,
     )
@@ -50,9 +50,9 @@ class ToolConfig(Config):
         description="what touches: sphere, cylinder or box; the last two, at several points and with moments, need"
         " simulation.contact = 'explicit'",
     )
-    radius: float = quantity(0.015, "m", "of the ball that touches, or of the cylinder", gt=0.0, le=0.5)
+    radius: float = quantity(0.015, "m", "of the spherical tip, or of the cylinder", gt=0.0, le=0.5)
     shaft: float | None = quantity(
-        None, "m", "radius of the rod that carries a ball; none: that of the ball", gt=0.0, le=0.5
+        None, "m", "radius of the rod that carries a spherical tip; none: that of the tip", gt=0.0, le=0.5
     )
     edges: tuple[float, float] | None = quantity(
         None, "m", "of a box: those of its end face, along the flange's x and y axes"
@@ -89,15 +89,15 @@ class Sensor(Config):
 
 
 class PathConfig(Config):
-    """What the tool draws on the surface."""
+    """Path of the tool on the surface."""
 
     pattern: Literal["raster", "spiral", "circle", "line", "square", "lemniscate", "hold", "file"] = Field(
         default="raster", description="raster, spiral, circle, line, square, lemniscate, hold or file"
     )
     size: tuple[float, float] = quantity((0.12, 0.08), "m", "along and across, measured on the surface")
     spacing: float = quantity(0.02, "m", "largest distance of two lines of a raster or spiral", ge=1e-4, le=1.0)
-    turns: float = quantity(1.0, "1", "how often a circle, square or lemniscate is drawn", gt=0.0, le=1000.0)
-    time: float = quantity(5.0, "s", "how long the pattern `hold` stays", gt=0.0, le=3600.0)
+    turns: float = quantity(1.0, "1", "number of rounds of a circle, square or lemniscate", gt=0.0, le=1000.0)
+    time: float = quantity(5.0, "s", "duration of the pattern `hold`", gt=0.0, le=3600.0)
     speed: float = quantity(PathMotion.speed, "m/s", "on the surface", ge=1e-4, le=5.0)
     acceleration: float = quantity(
         PathMotion.acceleration, "m/s²", "of starts, stops and bends: corners are rounded to keep it", gt=0.0
@@ -105,7 +105,7 @@ class PathConfig(Config):
     file: str | None = Field(
         default=None, description="CSV with x, y [, z, time, speed, force], or APT; beside the task"
     )
-    unit: Literal["m", "mm", "cm", "in"] = Field(default="m", description="of lengths in the file that name none")
+    unit: Literal["m", "mm", "cm", "in"] = Field(default="m", description="unit of lengths in the file that have none")
     at: Vector | None = quantity(
         None, "m", "a place near the middle of the pattern, world axes; none: the top of the surface"
     )
@@ -113,10 +113,12 @@ class PathConfig(Config):
     tool_tilt: float = quantity(0.0, "deg", "of the tool from the normal, towards its travel", ge=-45.0, le=45.0)
     tool_lean: float = quantity(0.0, "deg", "of the tool from the normal, to the left", ge=-45.0, le=45.0)
     spins: bool = Field(
-        default=False, description="the tool may turn about its own axis as suits the arm; else it keeps its heading"
+        default=False,
+        description="the rotation about the tool's own axis is free and chosen to suit the arm; else it"
+        " keeps its heading",
     )
     off_surface: float = quantity(
-        0.02, "m", "a point of a file that is farther from the believed surface is refused", gt=0.0, le=1.0
+        0.02, "m", "largest distance of a point of the file from the believed surface", gt=0.0, le=1.0
     )
 
     @model_validator(mode="after")
@@ -127,18 +129,17 @@ class PathConfig(Config):
 
 
 class Force(Config):
-    """How hard the tool presses along the normal."""
+    """Desired force along the normal."""
 
     normal: float | tuple[tuple[float, float], ...] = quantity(
         ((0.0, 5.0), (0.1, 20.0), (1.0, 20.0)),
         "N",
-        "one number, or pairs of (share of the path or time, force) that are joined by straight lines",
+        "one number, or pairs of (share of the path or time, force), interpolated linearly",
     )
     unit: Literal["share", "s"] = Field(default="share", description="of the first number of each pair")
     along: Literal["believed", "estimated"] = Field(
         default="believed",
-        description="whose normal the force follows: as the surface is believed to stand, or as the path of the contact"
-        " tells",
+        description="normal of the force: that of the believed surface, or estimated from the path of the contact",
     )
 
     @model_validator(mode="after")
@@ -163,14 +164,12 @@ class Force(Config):
 
 
 class Phases(Config):
-    """What comes before and after the path."""
+    """Approach and retreat."""
 
     stand_off: float = quantity(_USUAL.stand_off, "m", "over the surface, where the run starts", gt=0.0, le=1.0)
-    approach_speed: float = quantity(
-        _USUAL.approach_speed, "m/s", "down to the surface, until contact is felt", gt=0.0, le=1.0
-    )
+    approach_speed: float = quantity(_USUAL.approach_speed, "m/s", "down to the surface, until contact", gt=0.0, le=1.0)
     search: float = quantity(
-        _USUAL.search, "m", "above and below the believed surface, where contact is looked for", gt=0.0, le=0.5
+        _USUAL.search, "m", "above and below the believed surface, within which contact is searched", gt=0.0, le=0.5
     )
     press: float = quantity(_USUAL.press, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
     release: float = quantity(_USUAL.release, "s", "in which the last force goes to zero, at rest", gt=0.0, le=60.0)
@@ -178,14 +177,14 @@ class Phases(Config):
 
 
 class TimingConfig(Config):
-    """How late readings and commands are, as the controller believes; whether it is so says `truth.imperfections`."""
+    """Delays of readings and commands that the controller assumes; `truth.imperfections` has the true ones."""
 
-    sensing_delay: float = quantity(1e-3, "s", "age of a reading", ge=0.0, le=0.1)
+    sensing_delay: float = quantity(1e-3, "s", "delay of a reading", ge=0.0, le=0.1)
     computation_delay: float = quantity(5e-3, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
 
 
 class TruthConfig(Config):
-    """How the world differs from what the controller believes. A simulation reads it, nothing else."""
+    """Differences of the true world from what the controller believes. Only the simulation uses them."""
 
     shift: Drawn = quantity(0.0, "m", "of the surface along its normal, outwards")
     tilt: Drawn = quantity(0.0, "deg", "of the surface about `axis`, at the first contact")
@@ -210,7 +209,7 @@ class TruthConfig(Config):
 
 
 class Disturbance(Config):
-    """A push from outside, or one after the other."""
+    """A push, or a sequence of pushes."""
 
     push: Drawn | Vector = quantity(15.0, "N", "a force in the world's axes, or its size in a random direction")
     direction: Literal["any", "level"] = Field(
@@ -232,7 +231,7 @@ class Disturbance(Config):
 
 
 class Simulation(Config):
-    """How the world is computed."""
+    """Settings of the simulation."""
 
     period: float = quantity(1e-3, "s", "of control", ge=1e-4, le=0.02)
     physics_step: float = quantity(5e-4, "s", "of the simulation", ge=1e-5, le=2e-3)
@@ -244,5 +243,5 @@ class Simulation(Config):
         le=0.02,
     )
     contact: Literal["mujoco", "explicit"] = Field(
-        default="mujoco", description="law of contacts: MuJoCo's soft constraints, or a force law with stiction"
+        default="mujoco", description="contact law: MuJoCo's soft constraints, or an explicit force law with stiction"
     )

@@ -1,4 +1,4 @@
-"""The part that a task's path lies on."""
+"""The surface of a task's path."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pliant.tasks.parts import Pose, Vector
 
 
 class SurfaceConfig(Config):
-    """The part, as the controller believes it. In its own axes: z is a plane's normal and a cylinder's axis."""
+    """The surface, as the controller believes it. In its own axes: z is a plane's normal and a cylinder's axis."""
 
     shape: Literal["plane", "cylinder", "sphere", "hole", "edge", "mesh"] = Field(
         default="plane",
@@ -31,11 +31,11 @@ class SurfaceConfig(Config):
         " towards −y ends)",
     )
     pose: Pose | None = Field(
-        default=None, description="of its own frame in the world; none: in front of the robot, where it reaches well"
+        default=None, description="of its own frame in the world; none: in front of the robot, well within its reach"
     )
     tilt: float = quantity(0.0, "deg", "turned about the world's y axis where no pose is given", ge=-180.0, le=180.0)
     radius: float = quantity(0.15, "m", "of a cylinder, a sphere or a hole", gt=0.0, le=10.0)
-    hollow: bool = Field(default=False, description="of a cylinder or a sphere: the inner wall")
+    hollow: bool = Field(default=False, description="whether a cylinder or a sphere is touched from inside")
     depth: float = quantity(HoleSurface.depth, "m", "of a hole, from its face to its bottom", gt=0.0, le=10.0)
     chamfer: float = quantity(HoleSurface.chamfer, "m", "of a hole's mouth, bevelled by 45°", ge=0.0, le=10.0)
     angle: float = quantity(90.0, "deg", "of an edge: of the material between its two faces", ge=10.0, le=170.0)

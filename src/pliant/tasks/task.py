@@ -1,4 +1,4 @@
-"""A contact task as a value: everything that is asked, and how the world differs from what is believed."""
+"""A contact task as a value: everything that is asked, and the true world."""
 
 from __future__ import annotations
 
@@ -39,9 +39,10 @@ class TaskParts(Config):
     """What a task is made of, beside the robot and the controller."""
 
     format: int = Field(default=FORMAT, ge=FORMAT, le=FORMAT, description="version of this form")
-    description: str = Field(default="", description="one line, for people")
+    description: str = Field(default="", description="one line of text, for listings")
     check: Literal["on", "off"] = Field(
-        default="on", description="off: a task that must go out of reach; `task check` says so and does not fail"
+        default="on",
+        description="off: a task that leaves the reach on purpose; `task check` reports it and does not fail",
     )
     locked: dict[str, float] | None = quantity(
         None, "deg", "joint → angle at which it is fixed; none: those that the catalogue locks"
@@ -97,7 +98,7 @@ class TaskParts(Config):
     )
     disturbance: tuple[Disturbance, ...] = Field(default=(), description="pushes from outside")
     accept: dict[str, float] = Field(
-        default={}, description="metric → bound that it must keep: force_error, force_peak, contact_lost, path_error, …"
+        default={}, description="metric → its bound: force_error, force_peak, contact_lost, path_error, …"
     )
     sweep: dict[str, Any] = Field(
         default={}, description="key → list of values, read by `pliant study`; `seeds`: how many of each"

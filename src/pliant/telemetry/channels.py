@@ -1,4 +1,4 @@
-"""Channels and groups: what a number in a log is called, its unit, shape and labels."""
+"""Channels and groups: names, units, shapes and labels of the numbers in a log."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class ChannelGroup:
-    """Channels that are picked out of a tick in one call."""
+    """Channels that are extracted from a tick in one call."""
 
     pick: Callable[[Tick], Sequence[Any]]
     channels: tuple[Channel, ...]

@@ -1,4 +1,4 @@
-"""What is in a log, for people: the run, its channels, and the metrics that any log gives."""
+"""Contents of a log as text: the run, its channels, and general metrics."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _header(log: Log) -> RenderableType:
     if log.truncated:
         grid.add_row(
             Text("cut off", style="bold red"),
-            Text("the file ends before its end or is damaged; this is what it still holds"),
+            Text("the file is truncated or damaged; what could be read is shown"),
         )
     return grid
 

@@ -1,4 +1,4 @@
-"""What a log says about the run it holds."""
+"""Identity of the run in a log."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def export_lerobot(logs: Sequence[Log], folder: Path, *, fps: int = 50, action: 
 
     Args:
         logs: an episode each, of the same robot and sensors.
-        folder: made if it does not exist; nothing may be in it.
+        folder: made if it does not exist; it must be empty.
         fps: frames per second, at most the rate of the logs.
         action: channels that are the action, one after the other.
 
@@ -64,7 +64,7 @@ def export_lerobot(logs: Sequence[Log], folder: Path, *, fps: int = 50, action: 
         _check(log, logs[0], features, _features(log, action), fps)
     folder = output_folder(folder)
     if any(folder.iterdir()):
-        raise OutputError(f"{folder} is not empty: a data set gets a folder of its own")
+        raise OutputError(f"{folder} is not empty: a data set needs an empty folder")
     tasks = list(dict.fromkeys(_task(log) for log in logs))
     episodes: list[dict[str, Any]] = []
     stats: list[dict[str, Any]] = []
@@ -95,7 +95,7 @@ def _features(log: Log, action: Sequence[str]) -> dict[str, _Feature]:
 def _feature(log: Log, channels: Sequence[str]) -> _Feature:
     names: list[str] = []
     for channel in channels:
-        log.time(channel)  # it is there
+        log.time(channel)  # it exists
         about = log.channels[channel]
         size = int(np.prod(about.shape))
         labels = about.labels if len(about.labels) == size else tuple(map(str, range(size)))

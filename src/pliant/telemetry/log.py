@@ -84,9 +84,9 @@ class Log:
     def __init__(self, source: str, contents: Contents) -> None:
         """Use `Log.open`."""
         self.source = source
-        """where it came from"""
+        """its source"""
         self.truncated = not contents.complete
-        """whether the file ends before its end or is damaged: what could be read up to there is here"""
+        """whether the file is truncated or damaged; the log then holds what could be read before"""
         self.metadata: Mapping[str, Mapping[str, str]] = MappingProxyType(contents.metadata)
         """name → metadata record of the file"""
         self.info = RunInfo.from_metadata(contents.metadata["pliant"])
@@ -121,14 +121,14 @@ class Log:
             raise OutputError(f"{name} is an MCAP file, but not one of pliant's: it has no metadata record 'pliant'")
         try:
             return Log(name, contents)
-        except Exception as error:  # damage that left records, but no sense in them
+        except Exception as error:  # records are readable, but their content is damaged
             if contents.complete:
                 raise
-            raise OutputError(f"{name} is damaged: what it still holds cannot be read ({error})") from error
+            raise OutputError(f"{name} is damaged and cannot be read ({error})") from error
 
     @property
     def failure(self) -> str | None:
-        """Why the run ended early; None if it did not or if the log does not say."""
+        """Why the run ended early; None if it did not or if it is not recorded."""
         return self.metadata.get("pliant.outcome", {}).get("failure") or None
 
     @property
@@ -166,7 +166,7 @@ class Log:
         return self._times[key]
 
     def matching(self, suffix: str) -> list[str]:
-        """Names of the channels that end so."""
+        """Names of the channels with this ending."""
         return [name for name in self.channels if name.endswith(suffix)]
 
     def phases(self) -> list[tuple[float, str]]:

@@ -1,7 +1,7 @@
 """Metrics: pure functions of arrays.
 
 Each takes the samples that it is to judge: cut the window with `between` first, and pass the true signals where there
-are any. A sample that is not finite makes the result NaN, which keeps no target: nothing that failed looks good. SI
+are any. A sample that is not finite makes the result NaN, which meets no target, so that a failure cannot look good. SI
 units throughout; `n` is the number of samples, `k` of axes or joints.
 """
 
@@ -92,7 +92,7 @@ def moving_average(values: Array, window: int = AUTHORS_WINDOW) -> Array:
 
 
 def torque_variation(torque: Array, period: float) -> float:
-    """How restless the torque is: mean over joints and time of `|τ_t − τ_{t−1}| / T_s`.
+    """Torque variation: mean over joints and time of `|τ_t − τ_{t−1}| / T_s`.
 
     Args:
         torque: (n, k) N·m of successive ticks, none left out.
@@ -154,7 +154,7 @@ def switch_rate(phase: npt.NDArray[np.generic], period: float) -> float:
 
 
 def storage_margin(supplied: Array, stored: Array) -> float:
-    """How passive a port was: the smallest of `supplied_t − (stored_t − stored_0)` over time.
+    """Passivity margin of a port: the smallest of `supplied_t − (stored_t − stored_0)` over time.
 
     Args:
         supplied: (n,) J, energy that went in through the port up to each sample.

@@ -21,7 +21,7 @@ class RowLayout:
     """How a tick lies in a row: plain arrays, then the other arrays, then scalars.
 
     Plain are the signals' arrays that are float64 in C order: their bytes can be taken as they are, in a sixth of the
-    time of `np.concatenate`. Diagnostics go the careful way, whatever their first values look like.
+    time of `np.concatenate`. Diagnostics are copied with conversion, because their type may change.
     """
 
     plain: tuple[ChannelGroup, ...]
@@ -35,7 +35,7 @@ class RowLayout:
 
     @classmethod
     def of(cls, tick: Tick, info: RunInfo, units: Sequence[Channel]) -> Self:
-        """The plan for ticks like this one. Arguments and errors as of `groups`."""
+        """The layout of ticks like this one. Arguments and errors as of `groups`."""
         found = groups(tick, info, units)
         plain = tuple(group for group in found.signals if _is_plain(group, tick))
         arrays = (*(group for group in found.signals if group not in plain), *found.arrays)
@@ -57,7 +57,7 @@ class RowLayout:
         plain = _picked(self.plain, tick)
         try:
             block.view[start : start + 8 * plain_end] = b"".join(plain)
-        except (ValueError, TypeError, BufferError):  # another memory layout or size than usual: this tells which
+        except (ValueError, TypeError, BufferError):  # another memory layout or size: this raises the right error
             np.concatenate(plain, axis=None, out=row[:plain_end])
         if self.arrays:
             np.concatenate(_picked(self.arrays, tick), axis=None, out=row[plain_end:arrays_end])

@@ -1,4 +1,4 @@
-"""What a count of failures says about how often something fails."""
+"""Confidence bound on a failure rate from a count of failures."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ CONFIDENCE = 0.95
 
 
 def share_bound(count: int, runs: int, confidence: float = CONFIDENCE) -> float:
-    """One-sided upper bound of a share, of which `count` in so many independent runs were seen.
+    """One-sided upper bound of a failure rate, for `count` failures in `runs` independent runs.
 
     Clopper and Pearson, Biometrika 26 (1934): the p at which `count` or fewer are seen with probability
     1 − `confidence`; the quantile of Beta(count + 1, runs − count). It holds for runs that are drawn independently
@@ -24,7 +24,7 @@ def share_bound(count: int, runs: int, confidence: float = CONFIDENCE) -> float:
         A share, 0 … 1; 1 if all failed.
 
     Raises:
-        ValueError: numbers that are no count.
+        ValueError: invalid numbers.
     """
     if not (0 <= count <= runs and runs > 0 and 0.0 < confidence < 1.0):
         raise ValueError(

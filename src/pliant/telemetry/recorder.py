@@ -1,4 +1,4 @@
-"""Records a run: an observer that copies each tick into columns and writes them beside the loop."""
+"""Records a run: an observer that copies each tick into columns and writes them in a thread of its own."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ _WAITING = 4  # full blocks in memory before the loop waits for the file
 class Recorder:
     """An observer that writes every tick to an MCAP file. Use it in a `with` block, or call `close`.
 
-    In the loop it only copies numbers into preallocated rows; a thread beside it writes full blocks. Whatever ends the
-    run, `close` leaves a readable file with all ticks; a killed process leaves one that is readable up to its last
+    In the loop it only copies numbers into preallocated rows; a thread beside it writes full blocks. However the run
+    ends, `close` leaves a readable file with all ticks; a killed process leaves one that is readable up to its last
     full block. The bytes of the file depend on the ticks alone. Wall times go to `NAME.timing.json` beside it.
     """
 
@@ -167,7 +167,7 @@ class Recorder:
             self.close(failure)
         except OutputError:
             if kind is None:
-                raise  # the error that ended the run is worth more than this one
+                raise  # the error that ended the run is more important than this one
 
     # ------------------------------------------------------------------ in the loop
 

@@ -24,11 +24,11 @@ _COLOURS = {"reference": (0.16, 0.42, 0.78, 1.0), "truth": (0.92, 0.49, 0.13, 1.
 
 @dataclass(frozen=True)
 class DrawnScene:
-    """What there is to draw: a compiled model, the robot's joints first."""
+    """The scene to draw: a compiled model, the robot's joints first."""
 
     model: mujoco.MjModel
     joints: int
-    """how many of its joints are the robot's"""
+    """number of its joints that belong to the robot"""
 
 
 @dataclass
@@ -132,7 +132,7 @@ class SceneTopics:
 
 @dataclass(frozen=True)
 class _Names:
-    """Which channels of a block say what."""
+    """Channels of a block, by their meaning."""
 
     frames: list[str]
     """of which a wrench or a place is given"""

@@ -41,11 +41,11 @@ DIAGNOSTICS = (
     Channel("*wrench", _WRENCH),
     Channel("*torque", _TORQUE),
 )
-"""Units of diagnostics by custom; a recorder's own table goes first."""
+"""Default units of diagnostics; a recorder's own table has priority."""
 
 
 def signature(tick: Tick) -> tuple[Any, ...]:
-    """What decides which channels a tick has: two ticks with the same signature have the same ones."""
+    """Determines the channels of a tick: two ticks with the same signature have the same channels."""
     measurement, estimate, reference, truth = tick.measurement, tick.estimate, tick.reference, tick.truth
     return (
         tuple(measurement.wrenches),

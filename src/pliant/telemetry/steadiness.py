@@ -1,4 +1,4 @@
-"""Metrics of steadiness: how much a signal swings while what is asked of it stands still."""
+"""Metrics of steadiness: variation of a signal while its reference is constant."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pliant.errors import ShapeError
 from pliant.spatial import Array
 from pliant.telemetry.metrics import error_of
 
-SETTLED = 0.5  # s that are left out after each change of what is asked
+SETTLED = 0.5  # s that are left out after each change of the reference
 
 
 def swing(value: Array, wanted: Array, period: float, window: float = 1.0) -> float:
-    """Largest standard deviation of a signal in windows in which what is asked stands still, as a share of it.
+    """Largest standard deviation of a signal in windows with a constant reference, as a share of the reference.
 
     Args:
         value: (n,) in equal steps.
@@ -36,7 +36,8 @@ def swing(value: Array, wanted: Array, period: float, window: float = 1.0) -> fl
 def largest_line(
     value: Array, wanted: Array, period: float, window: float = 1.0, band: tuple[float, float] = (2.0, 100.0)
 ) -> float:
-    """Largest amplitude of a sine in a signal while what is asked stands still, as a share of it: a limit cycle.
+    """Largest amplitude of a sine in a signal while its reference is constant, as a share of the reference: a limit
+    cycle.
 
     Args:
         value: (n,) in equal steps.
@@ -63,7 +64,7 @@ def largest_line(
 
 
 def _windows(value: Array, wanted: Array, period: float, window: float) -> list[tuple[npt.NDArray[np.float64], float]]:
-    """Whole windows with what is asked in them."""
+    """Complete windows, with the reference in each."""
     error_of(value, wanted)  # the shapes
     if value.ndim != 1:
         raise ShapeError(f"the steadiness of one signal (n,), got an array of shape {value.shape}")

@@ -22,7 +22,7 @@ _LARGEST = 1e8  # bytes
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """One number that a run or a set of runs is judged by."""
+    """One metric of a run or of a set of runs."""
 
     name: str
     value: float
@@ -37,7 +37,7 @@ class Metric:
     std: float | None = None
     """sample standard deviation over runs, of n − 1"""
     runs: int | None = None
-    """how many runs the value is of, all of which reached their end; None: it is not of several runs"""
+    """number of runs of the value, all of which reached their end; None: it is not of several runs"""
     worst: bool = False
     """whether it is the worst of those runs, else their mean"""
 
@@ -127,9 +127,9 @@ def over_runs(runs: Sequence[Sequence[Metric]], worst: Collection[str] = ()) -> 
     """Mean and sample standard deviation (n − 1) of each metric over runs, or the worst run's value.
 
     Args:
-        runs: the metrics of each run that reached its end; a run that failed has no place here, neither in a mean nor
-            as the worst, and is counted beside. A metric that some runs lack is averaged over the others; one that is
-            not finite makes the mean so, so that no failure hides.
+        runs: the metrics of each run that reached its end; failed runs are excluded, from means and from worst values,
+            and counted separately. A metric that some runs lack is averaged over the others; one that is not finite
+            makes the mean so, so that no failure hides.
         worst: names of metrics that the worst run decides, as λ_max and t_break do in [FFMPC]; those have no deviation.
 
     Returns:

@@ -20,7 +20,7 @@ COUNTING = (
 
 
 def summary_table(summary: Summary) -> Table:
-    """A table with one row per metric, under case and controller; columns that say nothing are left out."""
+    """A table with one row per metric, under case and controller; empty columns are left out."""
     title = f"{summary.study} · pliant {summary.version}" + ("" if summary.seed is None else f" · seed {summary.seed}")
     table = Table(title=title, title_justify="left", title_style="bold", header_style="bold", expand=False)
     if single := len(summary.cases) == 1:
@@ -45,7 +45,7 @@ def summary_table(summary: Summary) -> Table:
 
 @dataclass(frozen=True)
 class _Columns:
-    """Which of the columns beside the value say anything."""
+    """The columns next to the value that are not empty."""
 
     paper: bool
     target: bool
@@ -59,7 +59,7 @@ class _Columns:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number with so many significant digits and no exponent where it is readable without; a dash for none."""
+    """A number with the given significant digits, without an exponent if it is readable; a dash for None."""
     if value is None:
         return "–"
     if math.isnan(value):

@@ -1,4 +1,4 @@
-"""Where a recorder writes to, and on which clock."""
+"""Output of a recorder, and its clock."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pliant.errors import OutputError
 
 
 def whole_seconds_below(first: int) -> int:
-    """ns by which a clock that begins at `first` ns, below zero, is moved up; one second more than it needs."""
+    """ns by which a clock that begins at `first` ns, below zero, is shifted; one second more than necessary."""
     return 0 if first >= 0 else (-first // 1_000_000_000 + 2) * 1_000_000_000
 
 

@@ -30,7 +30,7 @@ class MyController(Controller[pin.Data]):
 
     @property
     def needs(self) -> Needs:
-        """What it wants to be told beyond joint positions and velocities, such as Needs(wrench=True)."""
+        """Signals that it needs beyond joint positions and velocities, such as Needs(wrench=True)."""
         return Needs()
 
     @property
@@ -39,7 +39,7 @@ class MyController(Controller[pin.Data]):
         return {"spring/force": ChannelUnit("N")}
 
     def init(self, estimate: Estimate) -> pin.Data:
-        """State before the first step; here only the model's buffers. `step` must not remember anything elsewhere."""
+        """State before the first step; here only the model's buffers. `step` must not keep any state elsewhere."""
         return self.robot.model.createData()
 
     def step(self, estimate: Estimate, reference: Reference, state: pin.Data) -> tuple[Command, pin.Data]:

@@ -1,4 +1,5 @@
-"""Where each controller was found to hold still with suggested gains, as `benchmarks/domains.py` wrote it."""
+"""Conditions under which each controller was found to be steady with suggested gains, as `benchmarks/domains.py` wrote
+it."""
 
 from __future__ import annotations
 
@@ -20,12 +21,12 @@ class DomainRun:
     stiffness: float
     """of the surface, N/m"""
     delay: float
-    """from a reading's moment to the effect of its command, s"""
+    """s from a reading to the effect of its command"""
     verdict: str
     """`holds`, or what kept it from that"""
 
 
 @cache
 def trials() -> tuple[DomainRun, ...]:
-    """Every run that was made."""
+    """All runs."""
     return tuple(DomainRun(**one) for one in json.loads(FILE.read_text(encoding="utf-8")))

@@ -40,7 +40,7 @@ Load = tuple[Mapping[str, CarriedMass], Mapping[str, str]]
 
 @dataclass(frozen=True)
 class SensorFilters:
-    """How what the sensors say is filtered."""
+    """Filters of the sensor signals."""
 
     felt: bool = True
     """whether there is a force sensor"""
@@ -49,11 +49,11 @@ class SensorFilters:
     wrench_cutoff: float | None = None
     """Hz, of a Butterworth filter of contact wrenches; None: unfiltered"""
     wrench_stiffness: float | None = None
-    """N/m, by which the motion fills in what that filter is late by; None: the filter alone"""
+    """N/m, stiffness with which the motion compensates the delay of that filter; None: the filter alone"""
     torque: Literal["sensor", "model"] = "sensor"
-    """where the joint torques come from"""
+    """source of the joint torques"""
     joint_memory: float | None = None
-    """s, of the joint state filter; 0: none; None: 0.3 s for controllers that want calm positions"""
+    """s, of the joint state filter; 0: none; None: 0.3 s for controllers that need positions without noise"""
     observer_gain: float = GAIN
     """rad/s, of the momentum observer"""
     carried: Mapping[str, CarriedMass] = field(default_factory=dict[str, CarriedMass])
@@ -63,7 +63,7 @@ class SensorFilters:
     acceleration_cutoff: float = JointAcceleration.cutoff
     """Hz, of the joint accelerations with which what a sensor carries is taken off"""
     tare: Literal["weight", "bias"] | None = None
-    """what to do at the start about what the force sensor carries and nobody named; None: nothing"""
+    """taring of unknown loads of the force sensor at the start; None: no taring"""
     surface: SurfaceFitConfig | None = None
     """how the pressed surface's tilt is estimated from the path of the contact; None: it is as believed"""
 
@@ -71,7 +71,7 @@ class SensorFilters:
 def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: SensorFilters) -> Estimator[Any]:
     """Measurement → what a controller needs: filtered, with environment and disturbance where it asks for them.
 
-    The environment is looked for, and a normal force explained, along the normal of the believed surface; along the
+    The environment is estimated, and the normal force modelled, along the normal of the believed surface; along the
     world's z axis where there is none.
     """
     gain, period = sensing.velocity_gain, believed.period
@@ -115,9 +115,9 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Senso
 
 
 def _filtered(felt: Estimator[Any], robot: Robot, believed: Believed, sensing: SensorFilters) -> Estimator[Any]:
-    """The wrench behind its filter, and the joint torque from where it is to come."""
+    """The filtered wrench, and the joint torque from its chosen source."""
     frame = believed.presses
-    if sensing.torque == "model" and frame is not None:  # before the filter: it would make τ_ext late
+    if sensing.torque == "model" and frame is not None:  # before the filter, which would delay τ_ext
         felt = ModelledTorqueEstimator(felt, robot, frame, believed.period)
     if sensing.wrench_cutoff is None:
         return felt

@@ -26,15 +26,15 @@ class Experiment:
     channels: tuple[Channel, ...] = ()
     """units of what the controller and the source report"""
     duration: float | None = None
-    """s after which there is nothing more to do; None: it goes on"""
+    """s after which the task is done; None: it does not end"""
     warnings: tuple[str, ...] = ()
-    """what is unsafe about the parameters, in sentences"""
+    """warnings about the parameters, as sentences"""
     parameters: ControllerConfig | None = None
     """of the controller, as it was built; None: not known"""
     model: Robot | None = None
     """the robot as the controller believes it; None: not known"""
     limits: RunLimits | None = None
-    """where a run ends as failed; None: nowhere"""
+    """limits at which a run ends as failed; None: no limits"""
 
     def run(self, clock: Iterable[object], observers: Sequence[Observer] = ()) -> loop.Outcome:
         """Runs the loop, within the limits if there are any. Args and errors as of `loop.run`."""

@@ -1,4 +1,4 @@
-"""Objects of other people's code, by `module:name` or `file.py:name`."""
+"""Objects from a user's code, by `module:name` or `file.py:name`."""
 
 from __future__ import annotations
 
@@ -92,14 +92,14 @@ def entry_of(found: Any, name: str) -> ControllerEntry[Any]:
 
 
 def _guarded(entry: ControllerEntry[Any], name: str) -> ControllerEntry[Any]:
-    """Somebody's entry, whose parts answer with what they promise or with one sentence."""
+    """A user's entry, whose functions return the right type or raise an error of one sentence."""
     parts: dict[str, type] = {"build": Controller, "suggest": ControllerConfig, "filter": ReferenceSource}
     asked = {part: _Promised(name, part, getattr(entry, part), kind) for part, kind in parts.items()}
     return replace(entry, build=_Build(asked["build"]), suggest=asked["suggest"], filter=asked["filter"])
 
 
 class _Promised:
-    """A function of somebody's entry. Raises ConfigError: it fails, or returns something else than it should."""
+    """A function of a user's entry. Raises ConfigError: it fails, or returns another type."""
 
     def __init__(self, name: str, part: str, function: Callable[..., Any], kind: type) -> None:
         self._what, self._function, self._kind = f"controller {name!r}: its {part}", function, kind

@@ -1,4 +1,4 @@
-"""Controllers that are made of parts: haptic exploration in front of an impedance."""
+"""Controllers that are combinations: haptic exploration in front of an impedance."""
 
 from __future__ import annotations
 
@@ -21,17 +21,18 @@ from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExp
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
-_PROMPT = 1e-3  # s; a loop that is not later needs no damping of its contacts
-_DAMPED = 0.4  # times 1 / lateness: how fast a loop that late damps a motion; π/2 is the end of stability
-_SLOWER = 0.1  # k_I times the loop's lateness, at most: force is regulated ten times more slowly than the loop answers
+_PROMPT = 1e-3  # s; with less delay, no damping of contacts is needed
+_DAMPED = 0.4  # damping of a mass Λ as a multiple of Λ / delay; the limit of stability is π/2
+# largest k_I times the delay of the loop: the force is regulated ten times more slowly than the loop responds
+_SLOWER = 0.1
 
 
 class HapticConfig(ControllerConfig):
     """Haptic exploration in front of a stack of fractal impedances."""
 
-    impedance: StackConfig = Field(description="what pulls the frames towards their targets")
+    impedance: StackConfig = Field(description="the impedance of the frames")
     exploration: ExplorationConfig | None = Field(
-        default=ExplorationConfig(), description="how targets move so that a force becomes the desired one; none: never"
+        default=ExplorationConfig(), description="motion of the targets that regulates the force; none: no exploration"
     )
 
     def driven_frames(self) -> tuple[str, ...]:
@@ -124,7 +125,8 @@ RECIPES: Mapping[str, ControllerEntry[Any]] = {
     for entry in (
         _entry(
             "haptic",
-            "haptic exploration in front of a fractal impedance: feels its way to the desired force",
+            "haptic exploration in front of a fractal impedance: regulates the contact force without a"
+            " model of the surface",
             {},
             guarantees="impedance as `stack`; the target moves by x_b at most",
             regulates=True,

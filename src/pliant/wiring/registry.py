@@ -24,7 +24,7 @@ _OWN = merged_entries(CONTROLLERS, PREDICTIVE, RECIPES)
 def controllers() -> dict[str, ControllerEntry[Any]]:
     """Name → entry of every controller that has a name.
 
-    What an installed package offers and cannot be used is left out; `broken_controllers` says why.
+    Entries of installed packages that cannot be used are left out; `broken_controllers` has the reasons.
     """
     return _offered()[0]
 
@@ -56,7 +56,7 @@ def find_controller(name: str) -> ControllerEntry[Any]:
     """
     if ":" in name:
         return entry_of(imported(name), name)
-    own = _OWN.get(name)  # looking through every installed package takes a moment
+    own = _OWN.get(name)  # searching all installed packages takes time
     if own is None and name in broken_controllers() and name not in controllers():
         raise ConfigError(broken_controllers()[name])
     return own or find_entry(controllers(), name)

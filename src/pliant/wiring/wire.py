@@ -20,13 +20,13 @@ from pliant.wiring.experiment import Experiment
 
 @dataclass(frozen=True)
 class Offer:
-    """What a task brings to the loop, whoever controls."""
+    """What a task provides for the loop, whatever the controller."""
 
     robot: Robot
     """whose limits bound the controller"""
     believed: Believed
     plant: Callable[[bool], Plant[Any]]
-    """whether a force is to be felt → the robot in its world"""
+    """whether a force signal is needed → the robot in its world"""
     source: Callable[[Lookahead | None], ReferenceSource[Any]]
     """preview that is wanted → references"""
     model: Robot | None = None
@@ -39,7 +39,7 @@ class Offer:
     channels: tuple[Channel, ...] = ()
     """units of what the source reports"""
     deaf: str = ""
-    """where a force is asked for and there is nothing that could feel it: what would help; empty: it can be felt"""
+    """remedy if a force is asked for without a force signal; empty: there is a force signal"""
     duration: float | None = None
     """s that the task takes; None: it goes on"""
     warnings: tuple[str, ...] = ()
@@ -64,7 +64,7 @@ def parameters_for(
 
 
 def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offer) -> Experiment:
-    """The loop of a task with a controller: estimators and preview from what it needs, bounds and units round it.
+    """The loop of a task with a controller: estimators and preview from its needs, with bounds and units.
 
     Raises:
         PliantError: a robot, frame or parameter that does not fit.

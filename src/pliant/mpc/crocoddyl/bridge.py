@@ -1,7 +1,7 @@
 """The same problems as crocoddyl shooting problems, for mim-solvers and crocoddyl's solvers (`pliant[crocoddyl]`).
 
-For interoperability, for robots that the kernel cannot take (branched, more than 8 joints, free base), and as a second
-opinion. Models run in Python: leave the number of threads of a shooting problem at one. Copy results with
+For interoperability, for robots that the kernel cannot take (branched, more than 8 joints, free base), and for
+cross-checks. Models run in Python: leave the number of threads of a shooting problem at one. Copy results with
 `solver.us.tolist()`: single elements of a solver's vectors may dangle.
 """
 
@@ -43,7 +43,7 @@ def shooting_problem(
         A `crocoddyl.ShootingProblem` of the same cost, dynamics and derivatives.
 
     Raises:
-        ConfigError: bounds that the bridge does not know (friction cone; force bounds where the force is no state).
+        ConfigError: bounds that the bridge does not support (friction cone; force bounds where the force is no state).
     """
     bounds = problem.config.bounds
     if constraints and bounds.friction is not None:

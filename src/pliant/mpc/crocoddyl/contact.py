@@ -31,12 +31,12 @@ class ContactMotion:
 
 @dataclass(frozen=True)
 class ContactGeometry:
-    """Where the contact is, and how its forces load the joints."""
+    """Contact frame, and the effect of its forces on the joints."""
 
     frame: int
     axes: Axes
     rows: tuple[int, ...]
-    """components of the (6,) contact force that the model knows"""
+    """components of the (6,) contact force that the model has"""
     R_world_axes: Array
     """(3, 3) axes of the contact that do not turn with the frame"""
 
@@ -76,7 +76,7 @@ class ContactGeometry:
         return np.concatenate([A.T @ wrench[:3], A.T @ wrench[3:]])
 
     def external(self, model: pin.Model, wrench: Array) -> pin.StdVec_Force:
-        """The wrench (6,) as external forces on the joints, as pinocchio wants them."""
+        """The wrench (6,) as external forces on the joints, in pinocchio's format."""
         forces = pin.StdVec_Force([pin.Force.Zero() for _ in range(model.njoints)])
         frame = model.frames[self.frame]
         forces[frame.parentJoint] = frame.placement.act(pin.Force(wrench))
@@ -85,7 +85,7 @@ class ContactGeometry:
     def load_correction(self, model: pin.Model, data: pin.Data, wrench: Array) -> Array:
         """(nv, nv) ∂(Jᵀλ)/∂q of a force whose axes stand still, minus that of one that turns with the frame.
 
-        pinocchio differentiates external forces as if they were fixed in the body; d(Rᵀ f) = (Rᵀ f) × ω dt.
+        pinocchio differentiates external forces as if they were constant in the body's axes; d(Rᵀ f) = (Rᵀ f) × ω dt.
         """
         if self.axes == "local":
             return np.zeros((model.nv, model.nv))

@@ -1,4 +1,4 @@
-"""One node of the problem on any pinocchio model: trees and free bases for the bridge, a second opinion on the kernel.
+"""One node of the problem on any pinocchio model: trees and free bases for the bridge, a cross-check of the kernel.
 
 The same mathematics as the compiled kernel, written with pinocchio's analytic derivatives: [FFMPC] eq. 4–8
 (classical), 11–14 (torque feedback), 16–17 (naive visco-elastic), 20–24 (force feedback); costs eq. 25–29 with the full
@@ -20,7 +20,7 @@ from pliant.spatial import Array
 
 @dataclass(frozen=True)
 class NodeValues:
-    """What a node yields; names and shapes as the compiled `NodeResult`, rows and columns of the tangent space."""
+    """Results of a node; names and shapes as the compiled `NodeResult`, rows and columns of the tangent space."""
 
     cost: float
     x_next: Array
@@ -41,7 +41,7 @@ Residual = tuple[Array, Array, Array, Array]
 
 
 class PinocchioNode(NodeDynamics):
-    """One node: what it costs and where it leads; arguments as `NodeDynamics`."""
+    """One node: its cost and its next state; arguments as `NodeDynamics`."""
 
     def evaluate(self, x: Array, u: Array) -> NodeValues:
         """Dynamics, cost and all derivatives. Args: x (nx,), u (nu,)."""

@@ -90,7 +90,7 @@ class NodeDynamics:
         self._kinematics(q, v, a)
         a_x = M_inverse @ (torque_x - self._inverse_dynamics_x(q, v, a, np.zeros(6)))
         none_x, none_u, none = np.zeros((m, self.ndx)), np.zeros((m, self.nu)), np.zeros(m)
-        force = e if self.problem.config.predictive_model.force_state else none  # a state that acts on nothing
+        force = e if self.problem.config.predictive_model.force_state else none  # a state without any effect
         return Dynamics(a, a_x, M_inverse @ torque_u, force, none_x, none_u, none, none_x, none_u)
 
     def _rigid(self, q: Array, v: Array, drive: Array, torque_x: Array, torque_u: Array) -> Dynamics:

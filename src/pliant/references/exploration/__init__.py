@@ -1,1 +1,1 @@
-"""Haptic exploration: targets move until contact forces are the desired ones."""
+"""Haptic exploration: targets move until the contact forces reach the desired values."""

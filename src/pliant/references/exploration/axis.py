@@ -1,4 +1,4 @@
-"""Haptic exploration of one axis: a state machine over plain numbers, so that a tick costs a microsecond."""
+"""Haptic exploration of one axis: a state machine over plain numbers, so that a tick takes about a microsecond."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from pliant.references.exploration.rules import AxisLimits, AxisRules
 from pliant.references.exploration.sliding_span import SlidingSpan
 
 _CAUTION = 3.0
-"""a contact at rest shows at most K_0; one that shows more is ringing, and up to this factor slows the regulation
-down"""
+"""a contact at rest shows at most K_0; a larger apparent stiffness is oscillation, which reduces the gain by up to this
+factor"""
 
 
-_RELIEF = 0.25  # s after a drop of F_d; a retreat at any other time answers noise or ringing and is left alone
+# s after a drop of F_d; a retreat at another time is a response to noise or oscillation and needs no special handling
+_RELIEF = 0.25
 
 
 _HASTE = 2.0
-"""share of k_I in a retreat: what it regulates is the impedance's own spring, and the time-out of its phases waits"""
+"""share of k_I in a retreat, which regulates the impedance's own spring and must wait for the timeout of its phases"""
 
 
 class AxisPhase(IntEnum):
-    """What an axis is doing."""
+    """State of an axis."""
 
     OFF = 0
     """no force desired: the offset returns to zero"""
@@ -31,11 +32,11 @@ class AxisPhase(IntEnum):
     CONTACT = 2
     """regulating the force"""
     LOST = 3
-    """contact gone while regulating: the offset waits for it"""
+    """contact lost while regulating: the offset is held"""
 
 
 class ExploredAxis:
-    """State of one axis. `step` changes it in place; the source that owns it hands it on from tick to tick."""
+    """State of one axis. `step` changes it in place; the source that owns it passes it on from tick to tick."""
 
     __slots__ = (
         "absent",
@@ -67,7 +68,7 @@ class ExploredAxis:
         """largest force that the bound of the offset allows, N"""
         self.unreachable = False
         self.clamped = 0.0
-        """what F_max took from the desired force, N"""
+        """part of the desired force that exceeds F_max, N"""
         self.touching = False
         self.filtered = 0.0
         self.quiet = 0.0
@@ -79,7 +80,7 @@ class ExploredAxis:
         self.wanted = 0.0
         """last F_d, clamped, N"""
         self.relief = 0.0
-        """s for which a retreat may count as asked for"""
+        """s for which a retreat may still be a response to a drop of F_d"""
         self.forces, self.targets = SlidingSpan(), SlidingSpan()
 
     def step(
@@ -118,11 +119,11 @@ class ExploredAxis:
         self._switch(rules, active, period)
         if self.phase is AxisPhase.CONTACT:
             if self.retreat.began and self.stiffness < 0.5 * limits.stiffness:
-                self.retreat.end()  # a soft contact whose damping had made it seem stiff
+                self.retreat.end()  # a soft contact that seemed stiff because of its damping
                 self.retreat.waived = True
             lasting = self.retreat.lasting(force)
             if self.retreat.resting > 0.0:
-                self.forces.clear()  # the impedance switches: what the force does says nothing about the contact
+                self.forces.clear()  # the impedance switches, so the force has no information about the contact
                 self.targets.clear()
             else:
                 self._learn(rules, limits.stiffness, lasting, time, period)
@@ -141,7 +142,7 @@ class ExploredAxis:
         self._diagnose(rules, limits, wanted, force, free, period)
 
     def hold(self, limits: AxisLimits) -> None:
-        """Moves nothing (there is no force signal), but keeps to the bound."""
+        """Holds the offset (there is no force signal), within its bound."""
         self.offset = min(max(self.offset, -limits.range), limits.range)
 
     def _feel(self, rules: AxisRules, force: float, period: float) -> None:
@@ -171,8 +172,8 @@ class ExploredAxis:
     def _learn(self, rules: AxisRules, ceiling: float, force: float, time: float, period: float) -> None:
         """K̂ = span of the force / span of the target within the window; it starts at K_0, the stiffest there can be.
 
-        Spans rather than differences: a contact that bounces, or a force full of noise, then seems stiff, which slows
-        the regulation down. With differences it could seem soft, and the gain it earns keeps it bouncing.
+        Spans rather than differences: a contact that bounces, or a noisy force, then seems stiff, which reduces the
+            gain. With differences it could seem soft, and the higher gain would keep it bouncing.
         """
         oldest = time - rules.window * (1.0 + 1e-9)
         change, moved = self.forces.add(time, force, oldest), self.targets.add(time, self.target, oldest)
@@ -184,7 +185,7 @@ class ExploredAxis:
             if seen < self.stiffness:  # its inverse, to which the speed of the regulation is proportional, is filtered
                 share = period / (rules.window + period)
                 self.stiffness /= 1.0 + share * (self.stiffness / seen - 1.0)
-            else:  # caution comes faster
+            else:  # the estimate rises faster than it falls
                 self.stiffness += period / (0.25 * rules.window + period) * (seen - self.stiffness)
         elif self.stiffness > ceiling:
             self.stiffness += period / (rules.window + period) * (ceiling - self.stiffness)
@@ -212,7 +213,7 @@ class ExploredAxis:
     def _diagnose(
         self, rules: AxisRules, limits: AxisLimits, wanted: float, force: float, free: float, period: float
     ) -> None:
-        """Reachable bound, and whether the offset rests at its bound while force is missing."""
+        """Largest reachable force, and whether the offset stays at its bound while force is missing."""
         if self.phase is not AxisPhase.CONTACT:
             self.reachable, self.at_bound, self.unreachable = limits.force_max, 0.0, False
             return

@@ -1,4 +1,4 @@
-"""Parameters of the haptic exploration, with units and what they do: controls and help are made from them."""
+"""Parameters of the haptic exploration with units and texts, from which controls and help are made."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pliant.quantity import quantity
 
 
 class ExplorationConfig(Config):
-    """How a target moves so that the contact force becomes the desired one."""
+    """Motion of a target that regulates the contact force."""
 
     mode: Literal["adaptive", "paper"] = Field(
         default="adaptive",
@@ -30,24 +30,26 @@ class ExplorationConfig(Config):
     )
     speed: float = quantity(0.15, "m/s", "v_max: fastest motion of the offset", gt=0.0, le=2.0)
     speed_rotation: float = quantity(0.5, "rad/s", "v_max of rotation axes", gt=0.0, le=10.0)
-    reset: bool = Field(default=True, description="let the offset return to zero when contact is lost; off: hold it")
+    reset: bool = Field(default=True, description="return the offset to zero when contact is lost; off: hold it")
     reset_speed: float = quantity(0.1, "m/s", "speed at which the offset returns", gt=0.0, le=2.0)
     reset_speed_rotation: float = quantity(0.5, "rad/s", "the same for rotation axes", gt=0.0, le=10.0)
-    seek: bool = Field(default=False, description="without contact, move against the desired force until it is made")
+    seek: bool = Field(
+        default=False, description="without contact, move against the desired force until contact is made"
+    )
     seek_speed: float = quantity(0.02, "m/s", "speed of that search", gt=0.0, le=0.5)
     seek_speed_rotation: float = quantity(0.1, "rad/s", "the same for rotation axes", gt=0.0, le=2.0)
     stiffness_floor: float = quantity(
         300.0,
         "N/m",
-        "least stiffness the estimate may take; lower is faster on soft objects and trusts noise more",
+        "lower bound of the estimated stiffness; a lower value is faster on soft objects and more sensitive to noise",
         gt=0.0,
     )
     stiffness_floor_rotation: float = quantity(3.0, "N·m/rad", "the same for rotation axes", gt=0.0)
     window: float = quantity(
-        0.020, "s", "time over which the stiffness is taken, and time constant of its filter", gt=0.0, le=0.5
+        0.020, "s", "time window of the stiffness estimate, and time constant of its filter", gt=0.0, le=0.5
     )
     least_motion: float = quantity(
-        2e-4, "m", "motion of the target within the window below which the estimate is left alone", gt=0.0
+        2e-4, "m", "motion of the target within the window below which the estimate is not updated", gt=0.0
     )
     least_motion_rotation: float = quantity(2e-3, "rad", "the same for rotation axes", gt=0.0)
     contact_on: float = quantity(1.0, "N", "force above which contact begins", gt=0.0)
@@ -57,20 +59,22 @@ class ExplorationConfig(Config):
     contact_filter: float = quantity(
         0.005, "s", "low-pass on the force that begins a contact, so that noise does not; 0 for none", ge=0.0, le=0.1
     )
-    release_time: float = quantity(0.005, "s", "how long the force stays low before contact ends", ge=0.0, le=0.5)
-    lost_time: float = quantity(0.020, "s", "how long the offset waits for a lost contact to come back", ge=0.0, le=1.0)
+    release_time: float = quantity(
+        0.005, "s", "time for which the force must be low before contact ends", ge=0.0, le=0.5
+    )
+    lost_time: float = quantity(0.020, "s", "time for which the offset is held after contact is lost", ge=0.0, le=1.0)
     unreachable_time: float = quantity(
-        0.05, "s", "how long the offset rests at its bound before the force is called unreachable", ge=0.0, le=5.0
+        0.05, "s", "time at the bound of the offset after which the force is reported as unreachable", ge=0.0, le=5.0
     )
     turn_speed: float = quantity(
         4e-3,
         "m/s",
-        "a retreat slower than this ends with a step back at this speed, which the impedance notices",
+        "a retreat slower than this ends with a step back at this speed, which makes the impedance switch",
         gt=0.0,
         le=0.1,
     )
     turn_speed_rotation: float = quantity(4e-3, "rad/s", "the same for rotation axes", gt=0.0, le=0.2)
-    turn_time: float = quantity(0.015, "s", "how long that step back may last; 0 for none", ge=0.0, le=0.1)
+    turn_time: float = quantity(0.015, "s", "longest duration of that step back; 0 for none", ge=0.0, le=0.1)
     normal_time: float = quantity(0.05, "s", "time constant of the estimated normal", gt=0.0, le=5.0)
     normal_rate: float = quantity(2.0, "rad/s", "fastest turn of the estimated normal", gt=0.0, le=50.0)
     normal_cone: float = quantity(

@@ -1,4 +1,4 @@
-"""The normal of a contact, told from its force."""
+"""Estimates the normal of a contact from its force."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 Vector = tuple[float, float, float]
 
-_SLIDING = 5e-3  # m/s; slower motion does not tell the direction of friction
+_SLIDING = 5e-3  # m/s; slower motion does not determine the direction of friction
 
 
 def turned_normal(
@@ -18,16 +18,16 @@ def turned_normal(
     time_constant: float,
     rate: float,
 ) -> Vector:
-    """Turns an estimated normal towards the one that the contact force shows while the frame slides.
+    """Turns an estimated normal towards the direction given by the contact force while the frame slides.
 
     Friction acts against the sliding, so that the force without its part along the velocity is normal. At rest,
-    stiction may have any direction within the friction cone, so that the estimate is left as it is.
+    stiction may have any direction within the friction cone, so that the estimate is not changed.
 
     Args:
         normal: unit vector, world axes, on the side of the robot.
         force: of the environment on the robot, N.
         velocity: of the frame along its path, m/s.
-        least_force: N, below it the force tells nothing.
+        least_force: N, below it the force is not used.
         period: s.
         time_constant: s.
         rate: fastest turn, rad/s.

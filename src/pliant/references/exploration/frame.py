@@ -16,7 +16,7 @@ from pliant.spatial import Array
 
 
 class FrameRules:
-    """A configuration made ready for the ticks."""
+    """A configuration prepared for use in every tick."""
 
     __slots__ = ("angular", "config", "linear")
 
@@ -42,9 +42,9 @@ class ExploredFrame:
         self.limits: list[AxisLimits] = []
         self.modes: AxisModes | None = None
         self.rotation: Array | None = None
-        """R_world_axes (3, 3) of the offsets; None: the world's"""
+        """R_world_axes (3, 3) of the offsets; None: world axes"""
         self.linear: tuple[AxisRules, AxisRules] | None = None
-        """rules of the translations: as they are given, and within the bounds of the modes"""
+        """rules of the translations: as configured, and within the bounds of the modes"""
 
     def step(
         self,
@@ -65,14 +65,14 @@ class ExploredFrame:
             rules: parameters.
             tuning: impedance of the frame, 3 or 6 axes.
             desired: F_d (6,), N and N·m.
-            measured: F (6,); None if there is no usable signal: everything holds.
+            measured: F (6,); None if there is no usable signal: offsets are held.
             position: x_d (3,) without the offset, m.
             velocity: of x_d (3,), m/s.
             time: s.
             period: s since the last tick.
             modes: of the axes; None: a force where F_d is not zero.
-            rotation: R_world_axes (3, 3), in which the rest is told; None: the world's. Axes that turn from tick to
-                tick, as those of a path on a curved surface do, take the offsets with them.
+            rotation: R_world_axes (3, 3), of the axes in which the other arguments are given; None: world axes. Axes
+                that rotate from tick to tick, as those of a path on a curved surface do, carry the offsets with them.
         """
         if modes is not self.modes or (rotation is None) is not (self.rotation is None):
             self._turn_axes(modes, rotation)
@@ -152,7 +152,7 @@ class ExploredFrame:
         time: float,
         period: float,
     ) -> None:
-        """One direction instead of three: |F_d| along the normal, the tangents are left to the impedance."""
+        """One direction instead of three: |F_d| along the normal; the tangential axes follow the impedance."""
         size = math.hypot(*desired[:3])
         if size > 0.0:
             self._turn(rules.config, desired, measured, velocity, size, period)
@@ -193,7 +193,7 @@ class ExploredFrame:
                 normal, force, path, config.contact_on, period, config.normal_time, config.normal_rate
             )
         elif self.along.phase is AxisPhase.FREE and self.along.offset == 0.0:
-            normal = wanted  # nothing is touched and nothing would jump
+            normal = wanted  # no contact, and nothing would jump
         self.normal = within_cone(normal, wanted, config.normal_cone)
 
 

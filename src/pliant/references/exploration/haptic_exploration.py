@@ -31,13 +31,14 @@ CHANNELS: Mapping[str, str] = MappingProxyType(
 """name of a diagnostics channel below `exploration/FRAME/` → unit; each (k,), k = 3 or 6. Phases are those of
 `AxisPhase`."""
 
-_LONGEST_PERIOD = 0.02  # s; after a pause the offset goes on from where it was, it does not make up for it
-_ROUNDING = 1e-9  # share of a wrench; a smaller part along an axis is none
-_FORGOTTEN = 0.1  # s; a frame without a task for longer starts anew, its controller did not follow the offset either
+_LONGEST_PERIOD = 0.02  # s; after a longer pause the offset continues from where it was
+_ROUNDING = 1e-9  # fraction of a wrench; a smaller component along an axis counts as zero
+# s; a frame without a task for longer is reset, because its controller did not follow the offset either
+_FORGOTTEN = 0.1
 
 
 class ExplorationState:
-    """Owned by the loop: frames, time of the last tick, parameters in force."""
+    """Owned by the loop: frames, time of the last tick, active parameters."""
 
     __slots__ = ("frames", "inner", "rules", "time")
 
@@ -57,12 +58,13 @@ class _Frame:
 
 
 class HapticExploration(ReferenceSource[ExplorationState]):
-    """Adds an offset Δx to the targets of another source, found by feeling: x_d^h = x_d + Δx, |Δx| ≤ x_b.
+    """Adds an offset Δx to the targets of another source, which regulates the contact force: x_d^h = x_d + Δx, |Δx| ≤
+    x_b.
 
-    Per axis, while it touches something, Δx ← clamp(Δx − T·clamp(k_I (F_d − F)/K̂, ±v_max), ±x_b), where K̂ is the
+    Per axis, in contact, Δx ← clamp(Δx − T·clamp(k_I (F_d − F)/K̂, ±v_max), ±x_b), where K̂ is the
     stiffness that the contact and the impedance show together. Without a desired force the offset returns to zero. The
-    wrench of every task is what it should feel; F_d beyond F_max is clamped and the rest reported. Follows [HapFIC]
-    Tiseo et al. 2021, sec. II-B, with its Algorithm 1 as mode "paper".
+    wrench of every task is the desired one; F_d beyond F_max is clamped and the excess reported. Follows [HapFIC] Tiseo
+    et al. 2021, sec. II-B, with its Algorithm 1 as mode "paper".
 
     A reference of the inner source whose `tuning` is an `ExplorationConfig` changes the parameters from that tick on.
 
@@ -89,7 +91,7 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         """The inner reference with shifted targets.
 
         Raises:
-            SignalError: a frame that should feel a force has no force signal, or time runs backwards.
+            SignalError: a frame with a desired force has no force signal, or time runs backwards.
             ConfigError: a task without impedance parameters.
         """
         plain, state.inner = self.inner.step(estimate, state.inner)
@@ -123,7 +125,7 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         frame = state.frames.get(task.frame)
         if frame is None or estimate.time - frame.time > _FORGOTTEN:
             if not asked:
-                return task  # nothing to feel, and nothing shifted so far
+                return task  # no desired force, and no offset so far
             frame = state.frames[task.frame] = _Frame(task.frame, estimate.time, task.position)
         frame.time = estimate.time
         if tuning is None:
@@ -161,12 +163,12 @@ def _in_axes(
 
 
 def _usable(estimate: Estimate, task: TaskReference, needed: bool) -> list[float] | None:
-    """The measured wrench (6,); None if it is not finite, or not there and not needed."""
+    """The measured wrench (6,); None if it is not finite, or missing and not needed."""
     wrench = estimate.wrenches.get(task.frame)
     if wrench is None:
         if needed:
             raise SignalError(
-                f"frame {task.frame!r} should feel {task.wrench.tolist()} but has no force signal;"
+                f"frame {task.frame!r} has the desired wrench {task.wrench.tolist()} but no force signal;"
                 f" {options(estimate.wrenches, task.frame)}"
             )
         return [0.0] * 6

@@ -1,6 +1,6 @@
 """Haptic exploration exactly as printed: [HapFIC] Tiseo et al. 2021, Algorithm 1. For comparison.
 
-What it does wrong: the step δ = σ F_d/K_0 carries the sign of F_d, so that a negative F_d runs the wrong way; σ is a
+Its faults: the step δ = σ F_d/K_0 carries the sign of F_d, so that a negative F_d runs the wrong way; σ is a
 share of a step and a threshold in newtons at once, and the band of 0.01 N lies below the force of one step, so that
 it limit-cycles; the reset fires when the force is reached; a step per tick makes the speed depend on the control rate.
 """
@@ -32,4 +32,4 @@ def printed_step(
             return 0.0
         moved = offset - (step if missing > 0.0 else -step if missing < 0.0 else 0.0)
         return min(max(moved, -bound), bound)
-    return 0.0 if reset else offset  # printed without a clamp: a bound that shrinks is broken
+    return 0.0 if reset else offset  # printed without a clamp: if the bound shrinks, it is exceeded

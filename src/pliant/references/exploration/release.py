@@ -1,4 +1,4 @@
-"""How to let go of a contact through a fractal impedance without being misled by its switching."""
+"""Release of a contact through a fractal impedance, in spite of its switching."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _REST = 0.008  # s in which the force of a rigid contact follows a jump of the i
 
 
 class Retreat:
-    """What a fractal impedance does while its target retreats from a contact.
+    """Behaviour of a fractal impedance while its target retreats from a contact.
 
     It converges then: its force falls from F_m, at which the retreat began, by twice as much as its spring would, to
-    F = 2 F_spring − F_m, and would push off beyond F = 0. When it sees the error grow again it returns to the spring;
-    if it only sees rest, after a time-out of its own. So the force that lasts is (F + F_m)/2; a retreat ends when
-    that is the desired one, or before F reaches zero, and it ends with a short step back towards the contact.
+    F = 2 F_spring − F_m, and would push away beyond F = 0. When the error grows again it returns to the spring; at rest
+    it does so after its own timeout. So the lasting force is (F + F_m)/2; a retreat ends when that is the desired one,
+    or before F reaches zero, and it ends with a short step back towards the contact.
     """
 
     __slots__ = ("began", "left", "resting", "turning", "waived")
@@ -24,9 +24,10 @@ class Retreat:
         self.end()
 
     def end(self) -> None:
-        """No retreat under way."""
+        """No retreat in progress."""
         self.waived = False
-        """this retreat is left alone: it began on a soft contact, which the impedance's switching does not disturb"""
+        """this retreat needs no special handling: it began on a soft contact, which the impedance's switching does not
+        disturb"""
         self.began = 0.0
         """F_m, N; 0 without a retreat"""
         self.turning = 0.0

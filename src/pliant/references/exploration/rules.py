@@ -1,4 +1,4 @@
-"""The parameters of the exploration as one axis sees them, ready for the ticks."""
+"""The parameters of the exploration for one axis, prepared for use in every tick."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pliant.references.exploration.config import ExplorationConfig
 
 @dataclass(frozen=True, slots=True)
 class AxisRules:
-    """The configuration as one kind of axis sees it; lengths in m or rad, forces in N or N·m."""
+    """The configuration for one kind of axis; lengths in m or rad, forces in N or N·m."""
 
     gain: float
     speed: float
@@ -59,7 +59,7 @@ class AxisRules:
 
 
 class AxisLimits(NamedTuple):
-    """Impedance of the axis: what its controller does with the offset."""
+    """Impedance of the axis in its controller."""
 
     stiffness: float
     """K_0, N/m"""

@@ -1,4 +1,4 @@
-"""Largest minus smallest value over a sliding window of time, at a constant price per sample."""
+"""Largest minus smallest value over a sliding window of time, at a constant cost per sample."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import deque
 
 
 class SlidingSpan:
-    """Span of the samples of the last moments. Changed in place."""
+    """Span of the samples within a time window. Changed in place."""
 
     __slots__ = ("_falling", "_rising")
 

@@ -1,4 +1,4 @@
-"""The harmonic planner of [HapFIC] Tiseo et al. 2021, eq. 2-3, as printed and corrected: for comparison.
+"""The harmonic planner of [HapFIC] Tiseo et al. 2021, eq. 2-3, as printed and corrected, for comparison.
 
 It integrates an attractor's acceleration. As printed, the convergence phase uses the absolute position where the
 error is meant, and an amplitude without sign: it gets stuck or runs away, depending on where the origin lies and on
@@ -71,7 +71,7 @@ def retargeted(plan: AttractorPlan, target: tuple[float, ...], settings: Attract
 
 
 def advanced(plan: AttractorPlan, period: float, settings: AttractorSettings) -> AttractorPlan:
-    """The plan one period in s later."""
+    """The state one period in s later."""
     return replace(plan, axes=tuple(_advanced(axis, plan, period, settings) for axis in plan.axes))
 
 

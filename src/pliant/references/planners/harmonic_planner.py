@@ -1,4 +1,4 @@
-"""Harmonic planner: turns targets that jump into smooth motion, retargeted at any time."""
+"""Harmonic planner: turns targets that jump into smooth motion; targets may change at any time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from pliant.references.trajectories.trajectory import vector
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import Array, exp3, log3, skew
 
-_STEADY = 0.02  # s: a target that moves all the time is looked at fifty times a second
+_STEADY = 0.02  # s: a target that moves continuously is updated at 50 Hz
 _ROUNDING = 1e-9  # s; times are sums of periods
 _ANGULAR_STEP = 1e-4  # s, for the difference that gives the angular acceleration
 _REST = vector(np.zeros(6), "rest")
@@ -50,7 +50,7 @@ class PlannedFrame:
         """rotation vector of R·baseᵀ, rad"""
         self.base = rotation
         self.clamped: Array = np.zeros(3)
-        """what the workspace took from the last target, m"""
+        """shift of the last target into the workspace, m"""
         self.position: Array | None = None
         """last target"""
         self.rotation: Array | None = None
@@ -73,18 +73,18 @@ class PlannerState:
 class HarmonicPlanner(ReferenceSource[PlannerState]):
     """Smooths the targets of another source; each frame starts where the robot is.
 
-    Whenever a target of the inner source differs from the last one, motion goes over to it: from rest along a
+    When a target of the inner source changes, the motion goes to the new one: from rest along a
     straight line with a half cosine over time; on the way by superposition (see `superposition`), so that it never
     leaves the hull of its start and the targets so far. Wrench, tuning and posture of the inner reference pass
-    unchanged; a change of the target that comes sooner than 20 ms after another one waits for so long, the latest wins.
+    unchanged; a change of the target within 20 ms of another one is delayed until then; the latest one counts.
 
     Args:
         inner: targets; the velocities that it gives are ignored.
         place: forward kinematics, `robot.placement`; called once per frame, when it first appears.
         limits: of speed and acceleration.
-        workspaces: frame → where its targets may lie. One beyond is brought back to the surface; by how much is in the
+        workspaces: frame → where its targets may lie. A target outside is moved to the boundary; the shift is in the
             channel `planner/FRAME/clamped` (3,) m of `Reference.diagnostics`.
-        lookahead: of a preview of the first task, through the targets that the inner source knows of; None for none.
+        lookahead: of a preview of the first task, with the targets that the inner source knows; None for none.
 
     Raises:
         ConfigError: a preview is wanted and the inner source does not say what is `coming`.
@@ -99,7 +99,9 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         lookahead: Lookahead | None = None,
     ) -> None:
         if lookahead is not None and not hasattr(inner, "coming"):
-            raise ConfigError(f"a preview needs a source that says what is coming, and {type(inner).__name__} does not")
+            raise ConfigError(
+                f"a preview needs a source whose next references are known, and those of {type(inner).__name__} are not"
+            )
         self.inner, self.limits, self._place = inner, limits or PlannerLimits(), place
         self.workspaces, self.lookahead = dict(workspaces or {}), lookahead
 
@@ -120,7 +122,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         return changed(goal, tasks=tasks, preview=preview, diagnostics=diagnostics), state
 
     def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
-        """What will be said of the first task at later times, s, increasing, if nothing unknown comes between.
+        """The references of the first task at later times, s, increasing, with the targets that are known now.
 
         Args: goal: the inner source's last reference; state: after it was planned.
         """
@@ -138,7 +140,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         return found
 
     def _take(self, task: TaskReference, frame: PlannedFrame, time: float) -> None:
-        """A new target, if it is one and the last one is old enough."""
+        """Accepts a target that has changed, if the last change is old enough."""
         if self._is_new(task, frame) and time >= frame.taken + _STEADY:
             self._retarget(task, frame, time)
 
@@ -183,7 +185,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
 
 
 def _placed(task: TaskReference, frame: PlannedFrame, time: float) -> TaskReference:
-    """A target's task where the plan has it now."""
+    """The task of a target, at its planned pose."""
     pose, velocity, acceleration = _now(frame, time)
     rotation = None if task.rotation is None else pose[1]
     return changed(task, position=pose[0], rotation=rotation, velocity=velocity, acceleration=acceleration)

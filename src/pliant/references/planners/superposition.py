@@ -1,8 +1,9 @@
 """Harmonic superposition: smooth motion to targets that may change at any time.
 
 Every target adds one half cosine: x_d = x_0 + Σ_k Δ_k ½(1 − cos π u_k), u_k = clip((t − t_k)/T_k, 0, 1), with Δ_k the
-way from the previous target to this one. No piece ends before an earlier one, so that at every instant the earlier
-pieces are further on than the later ones, and x_d is a convex combination of x_0 and the targets so far: it cannot
+    displacement from the previous target to this one. No piece ends before an earlier one, so that at every instant the
+        earlier pieces are more complete than the later ones, and x_d is a convex combination of x_0 and the targets so
+        far: it cannot
 leave their hull. At rest it is exactly on the last target. All axes of a piece share one clock, so a single motion is
 a straight line.
 """
@@ -42,7 +43,7 @@ class MotionLimits:
         return max(0.5 * math.pi * distance / self.speed, math.pi * math.sqrt(0.5 * distance / self.acceleration))
 
     def bounded(self, modes: AxisModes | None, way: Array) -> MotionLimits:
-        """Limits of a motion along a way (3,) m that keep what modes allow along force axes."""
+        """Limits of a motion along a displacement (3,) m within the bounds of modes along force axes."""
         if modes is None or math.isinf(modes.speed):
             return self
         along = float(np.linalg.norm((modes.rotation.T @ way)[list(modes.having("force")[:3])]))
@@ -74,7 +75,7 @@ class PlannedMotion(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Superposition:
-    """Pieces under way on top of a base point. Immutable: retargeting returns another plan."""
+    """Active pieces on top of a base point. Immutable: retargeting returns another plan."""
 
     base: tuple[float, ...]
     """(k,) where all finished pieces led"""
@@ -124,9 +125,9 @@ class Superposition:
         """The plan with a new target.
 
         A piece that has not begun yet is replaced. The new one starts now and lasts as long as its own limits and the
-        order of the ends ask for; where the sum with the pieces under way would break a limit, it is stretched or
-        starts later, whichever ends first. Starting when the last one ends is always possible, so that a plan is
-        always found.
+        order of the ends require; where the sum with the pieces under way would break a limit, it is stretched or
+        starts later, whichever ends first. Starting when the last one ends is always possible, so that a plan is always
+        found.
 
         Args:
             time: now, s.
@@ -166,8 +167,8 @@ def _earliest(
         ends < rest + (1.0 - 1e-9) * shortest
     )
     if not keeps.any():
-        return rest, shortest  # one after the other: each keeps the limits by itself
-    # Of pieces that end together the one that starts first: a tie must not hang on rounding.
+        return rest, shortest  # one after the other: each piece is within the limits
+    # Of pieces that end together the one that starts first: a tie must not depend on rounding.
     best = int(np.argmin(np.where(keeps, ends + 1e-3 * (starts - time), np.inf)))
     return float(starts[best]), float(durations[best])
 

@@ -1,4 +1,4 @@
-"""Where a frame can be at all: targets beyond it are brought back to its surface, and said so."""
+"""Workspace of a frame: targets outside are moved to its boundary, which is reported."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ class Workspace:
 
 
 def workspace_of(robot: Robot, frame: str) -> Workspace:
-    """The ball around the first revolute joint that a frame cannot leave, whatever the angles: the arm stretched out.
+    """The ball around the first revolute joint that a frame cannot leave, its radius is the length of the stretched
+    arm.
 
     Args:
         robot: revolute joints in the chain to the frame.

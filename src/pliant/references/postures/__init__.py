@@ -1,1 +1,1 @@
-"""Joint configurations that go with the motion of a frame."""
+"""Joint configurations for the motion of a frame."""

@@ -1,10 +1,10 @@
-"""What every inverse-kinematics method here solves, and how it is asked.
+"""Common problem and interface of the inverse-kinematics methods.
 
 For a pose (p, R) of one frame: the configuration nearest to a preferred one among those that reach the pose,
 
     min_q  ‖x(q) ⊖ (p, R)‖² + c² ‖q − q_prior‖²      subject to  lower ≤ q ≤ upper,
 
-errors in m and rad. c is so small that the pose wins; it decides what redundancy leaves open.
+errors in m and rad. c is so small that the pose has priority; it determines the redundancy.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ class Target(NamedTuple):
     rotation: Array | None
     """R_world_frame (3, 3); None leaves the orientation free"""
     spins: bool = False
-    """whether the frame may turn about its own z axis, so that the rotation's z axis alone counts"""
+    """whether the rotation about the frame's own z axis is free"""
 
     def nearest(self, R: Array) -> Target:
-        """The same target, turned about its own z axis, if it may be, to be as near as it can to R (3, 3)."""
+        """The same target, turned about its own z axis, if that is free, as near as possible to R (3, 3)."""
         if self.rotation is None or not self.spins:
             return self
         relative = self.rotation.T @ R
@@ -57,7 +57,7 @@ class PoseSolver(ABC):
 
     POSTURE_COST = 3e-3  # c, (m or rad)/rad: biases the pose by c² times a joint step, below a micrometre
     MAX_ITERATIONS = 50
-    STEP_TOLERANCE = 1e-9  # rad; a smooth path needs samples that have converged
+    STEP_TOLERANCE = 1e-9  # rad; tolerance of convergence, for a smooth path
 
     def __init__(self, robot: Robot, frame: str) -> None:
         self.robot, self.frame = robot, frame

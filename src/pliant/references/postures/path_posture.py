@@ -1,4 +1,4 @@
-"""The joint path that goes with a tool path, from the stand-off before it to the one behind it, on one branch."""
+"""The joint path of a tool path, including approach and retreat, on one branch."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from pliant.spatial import Array, quaternion
 
 @dataclass(frozen=True)
 class PathPosture:
-    """Posture and orientation of the five phases of a task on a surface, each on the clock of its phase."""
+    """Posture and orientation of the five phases of a task on a surface, each with the time of its phase."""
 
     solved: PosturePath
     """of the whole: down to the believed surface, along the path, away from it"""
@@ -48,7 +48,7 @@ def path_posture(
     period: float,
     nominal: npt.ArrayLike | None,
 ) -> PathPosture:
-    """Solves the posture along descent, path and rise, one after the other.
+    """Solves the posture along descent, path and retreat, one after the other.
 
     Args:
         robot: the arm.

@@ -18,7 +18,7 @@ from pliant.spatial import Array
 
 
 def mink_solver(robot: Robot, frame: str) -> PoseSolver:
-    """`MinkSolver`, whose module is imported when one is made: mink brings solvers that take long to import."""
+    """`MinkSolver`, whose module is imported on first use, because mink's solvers take long to import."""
     from pliant.references.postures.ik_mink import MinkSolver
 
     return MinkSolver(robot, frame)
@@ -29,7 +29,7 @@ METHODS: dict[str, Callable[[Robot, str], PoseSolver]] = {"mink": mink_solver, "
 
 
 class UnreachableError(PliantError):
-    """A pose that the robot cannot take, or not in time. Args: time: s of the motion at which that is."""
+    """A pose that the robot cannot reach, or not in time. Args: time: s of the motion at which that is."""
 
     def __init__(self, message: str, time: float = 0.0) -> None:
         super().__init__(message)
@@ -49,9 +49,9 @@ class PostureOptions:
     speed_fraction: float = 1.0
     """share of the joints' speed limits that a step from sample to sample may use"""
     tolerance: float = 1e-3
-    """m by which the frame may miss its pose, ten times as many rad; infinite accepts everything, as near as it gets"""
+    """m, tolerance of the position, ten times as many rad of the orientation; infinite accepts the nearest pose"""
     spins: bool = False
-    """whether the frame may turn about its own z axis; a configuration that suits is then chosen"""
+    """whether the rotation about the frame's own z axis is free; a suitable one is then chosen"""
     restarts: int = 20
     """random configurations tried for the first pose if neither the nominal posture nor home lead there"""
 
@@ -65,13 +65,13 @@ class PosturePath:
     postures: Array
     """(m, n) rad"""
     worst_distance: float
-    """m by which the frame misses its position at most"""
+    """m, largest position error of the frame"""
     worst_angle: float
     """rad"""
 
 
-_BRANCHES = 6  # starts that are tried before a motion is called unreachable
-_FALLBACK_SPEED = 10.0  # rad/s, for robots whose file names no limit
+_BRANCHES = 6  # starts that are tried before a motion is reported as unreachable
+_FALLBACK_SPEED = 10.0  # rad/s, for robots whose file has no limit
 
 
 def solve_posture(
@@ -84,8 +84,8 @@ def solve_posture(
     """Follows a frame's motion with the whole arm.
 
     Every sample starts from the one before and may differ from it by no more than the joints' speed allows, so that
-    the path stays on one branch. What redundancy leaves open moves as little as possible and drifts towards the
-    nominal posture.
+    the path stays on one branch. In the null space the arm moves as little as possible and drifts towards the nominal
+    posture.
 
     Args:
         robot: the arm.
@@ -95,7 +95,7 @@ def solve_posture(
         options_: see `PostureOptions`.
 
     Raises:
-        UnreachableError: says when, where and by how much the frame falls short.
+        UnreachableError: with the time, place and size of the error.
         ConfigError: an unknown method or an impossible duration.
     """
     chosen = options_ or PostureOptions()
@@ -130,7 +130,7 @@ def first_postures(solver: PoseSolver, target: Target, nominal: Array | None, ch
     singularities.
 
     Raises:
-        UnreachableError: none was found; says by how much the nearest one falls short.
+        UnreachableError: none was found; with the error of the nearest one.
     """
     robot, box = solver.robot, joint_box(solver.robot)
     random = np.random.default_rng(0)
@@ -142,7 +142,7 @@ def first_postures(solver: PoseSolver, target: Target, nominal: Array | None, ch
     best, least = guesses[0], math.inf
     for guess in guesses:
         q = guess
-        for _ in range(3):  # the prior moves along, so that the posture cost stops pulling
+        for _ in range(3):  # the prior is updated, so that the posture cost vanishes
             q = solver.solve(q, q, box, target)
         distance, angle = solver.shortfall(q, target)
         if distance <= chosen.tolerance and angle <= 10.0 * chosen.tolerance:

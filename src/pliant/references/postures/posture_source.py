@@ -1,4 +1,4 @@
-"""References for a stack of tasks: the tool's motion, the posture that goes with it, other frames at that posture."""
+"""References for a stack of tasks: the tool's motion, its posture, and other frames at that posture."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def posture_source(
     posture: PostureOptions | None = None,
     tunings: Mapping[str, ImpedanceTuning] | None = None,
 ) -> PostureSource:
-    """Solves the posture along a motion, then serves it with the positions of other frames.
+    """Solves the posture along a motion; the references then include the positions of other frames.
 
     Args:
         robot: the arm.
@@ -55,7 +55,7 @@ def posture_source(
 
 @dataclass(slots=True, frozen=True)
 class _Task:
-    """What of a task does not change."""
+    """Constant data of a task."""
 
     frame: str
     rotation: Array | None
@@ -67,7 +67,7 @@ class _Task:
 
 
 class PostureSource(ReferenceSource[Started]):
-    """Tool, secondary frames and posture from one spline: a step costs one small matrix product.
+    """Tool, secondary frames and posture from one spline: a step takes one small matrix product.
 
     Args:
         motion: of the tool frame.

@@ -1,4 +1,4 @@
-"""Checks a task on the surface as it is believed and on others as it may truly be, and says what would help."""
+"""Checks a task on the believed surface and on possible true surfaces, and proposes a remedy."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class SurfaceCheck:
     margins: tuple[Margin, ...] = ()
     """empty where no joint path was found"""
     failure: str = ""
-    """the first point that fails and by how much, in one sentence; empty: none does"""
+    """the first point that fails, with its value, in one sentence; empty: none fails"""
     time: float = math.nan
-    """s from the start of the course at which that is"""
+    """s from the start of the course to that point"""
 
     @property
     def reachable(self) -> bool:
@@ -35,7 +35,7 @@ class SurfaceCheck:
 
 @dataclass(frozen=True)
 class ReachCheck:
-    """What was found."""
+    """Result of a check."""
 
     course: Course
     surfaces: tuple[SurfaceCheck, ...]
@@ -43,11 +43,11 @@ class ReachCheck:
     posture: PosturePath | None
     """on the believed surface"""
     help: str = ""
-    """what would help, in one sentence"""
+    """remedy, in one sentence"""
 
     @property
     def reachable(self) -> bool:
-        """Whether the task can be done on every surface that was looked at."""
+        """Whether the task can be done on every surface that was checked."""
         return all(found.reachable for found in self.surfaces)
 
     def rows(self) -> list[tuple[str, str, str, str, str, str]]:
@@ -82,10 +82,11 @@ def check_reach(
         robot: as it is believed.
         frame: the controlled one.
         course: of the task, as it is believed.
-        others: courses that must be possible, too, because the world or a seed may make them so; each is made when it
-            is looked at, and one whose making raises ConfigError is not possible.
-        bounds: what must be left; None: the defaults.
-        posture: how its joint path is solved, and whether the tool may spin; its period is chosen here.
+        others: further courses that must be possible, for possible true worlds; each is made when it is checked, and
+            one that raises ConfigError is not possible.
+        bounds: required margins; None: the defaults.
+        posture: how its joint path is solved, and whether the rotation about the tool's axis is free; its period is
+            chosen here.
         nominal: (n,) rad, as of the task.
         solved: the joint path along `course`, where the task brings its own; None: it is solved here.
 

@@ -1,4 +1,4 @@
-"""Where a tool goes in a task on a surface, sampled: on the believed surface, or on a true one."""
+"""Sampled poses of a tool in a task on a surface, believed or true."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from pliant.surfaces import SurfaceGeometry
 
 _STEP = 0.1  # s between samples
 _FEWEST, _MOST = 40, 300  # samples of the path
-_FARTHEST = 0.1  # m along the normal that a true surface is looked for
+_FARTHEST = 0.1  # m along the normal within which a true surface is searched
 
 
 @dataclass(frozen=True)
 class Course:
-    """A tool's way down to a surface, along a path and away from it."""
+    """Motion of a tool down to a surface, along a path and away from it."""
 
     times: Array
     """(k,) s"""
@@ -48,11 +48,12 @@ class Course:
         return FrameMotion(frame, Spline(self.times, self.places), QuaternionSpline(self.times, turns))
 
     def moved(self, shift: Array) -> Course:
-        """The same elsewhere. Args: shift: (3,) m."""
+        """The same course, shifted. Args: shift: (3,) m."""
         return replace(self, places=self.places + shift)
 
     def on(self, surface: SurfaceGeometry, lift: float) -> Course:
-        """Where the tool really goes if the surface is another one: as far along the believed normals as it meets it.
+        """The course on another true surface: each point is moved along the believed normal until it meets that
+        surface.
 
         Args:
             surface: the true one.
@@ -132,4 +133,4 @@ def _height(surface: SurfaceGeometry, place: Array, normal: Array, lift: float) 
         if abs(step) < 1e-9:
             return height
     x, y, z = place
-    raise ConfigError(f"the path leaves the surface near ({x:.3f}, {y:.3f}, {z:.3f}) m: nothing is there to press on")
+    raise ConfigError(f"the path leaves the surface near ({x:.3f}, {y:.3f}, {z:.3f}) m")

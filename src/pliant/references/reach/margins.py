@@ -1,4 +1,4 @@
-"""What is left along a joint path: joint range, distance from singularities, torque, speed."""
+"""Margins along a joint path: joint range, distance from singularities, torque, speed."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from pliant.references.trajectories.spline import Spline
 from pliant.robot import Robot
 from pliant.spatial import Array
 
-_ARM = 0.25  # m: a turn by 1 rad counts as much as a way of so many metres
+_ARM = 0.25  # m: length that corresponds to a rotation of 1 rad
 
 
 @dataclass(frozen=True)
 class ReachBounds:
-    """What a task must leave.
+    """Required margins of a task.
 
     Raises:
         ConfigError: on construction, when a value is negative.
@@ -36,7 +36,7 @@ class ReachBounds:
     speed: float = 1.0
     """largest share of a joint's speed limit"""
     sideways: float = 20.0
-    """N across the normal, in the worst direction, that the torques must bear beside weight and force"""
+    """N tangential force, in the worst direction, that the torques must bear in addition to weight and force"""
 
     def __post_init__(self) -> None:
         for name in ("joint_margin", "freedom", "load", "speed", "sideways"):
@@ -60,7 +60,7 @@ class Margin:
 
     @property
     def worst(self) -> int:
-        """Sample at which least is left."""
+        """Sample with the smallest margin."""
         return int(np.argmin(self.values) if self.least else np.argmax(self.values))
 
     @property
@@ -83,7 +83,7 @@ def margins(
         frame: the controlled one.
         course: what it does.
         posture: along it.
-        bounds: what must be left.
+        bounds: required margins.
         spins: whether the turn about the tool's own axis is free.
     """
     whole = Spline(posture.times, posture.postures)

@@ -1,4 +1,4 @@
-"""What would make a task possible that is not."""
+"""Proposes a change that makes a task possible."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def remedy(
     spins: bool,
     nominal: Array | None,
 ) -> str:
-    """One sentence. What it proposes was tried on the believed surface; only a lower speed was not, which follows from
-    the speed that is needed.
+    """One sentence. The proposal was tried on the believed surface, except a lower speed, which follows from the
+    required speed.
 
     Args: as `check_reach`; left: margins where a joint path was found, else empty.
     """

@@ -1,1 +1,1 @@
-"""Paths of a tool on a surface: patterns and files, laid on it, timed, and oriented by its normal."""
+"""Tool paths on a surface, from patterns and files, with timing and orientation."""

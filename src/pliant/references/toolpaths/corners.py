@@ -1,4 +1,4 @@
-"""Corners of a row of points, rounded by arcs."""
+"""Rounds the corners of a polyline by arcs."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 from pliant.spatial import Array
 
 _STRAIGHT = 1e-3  # rad; less is no corner
-_REVERSAL = math.pi - 0.05  # rad; more is a turning back, which no arc rounds
+_REVERSAL = math.pi - 0.05  # rad; a larger angle is a reversal, which is not rounded
 
 
 def rounded(points: Array, radius: float, step: float) -> Array:
-    """The same way with each corner replaced by an arc that is tangent to both sides.
+    """The same path with each corner replaced by an arc that is tangent to both sides.
 
-    An arc takes at most half of the shorter side, so neighbours do not overlap; where the way turns back there is none.
+    An arc takes at most half of the shorter side, so neighbours do not overlap; at a reversal there is none.
 
     Args:
         points: (k, d) m, d = 2 or 3.
@@ -23,7 +23,7 @@ def rounded(points: Array, radius: float, step: float) -> Array:
         step: m between two points that are returned, at most.
 
     Returns:
-        (m, d): the whole way in small steps, first and last point kept.
+        (m, d): the whole path in small steps, with the first and last point kept.
     """
     points = _without_repeats(points)
     if len(points) < 2:

@@ -24,7 +24,7 @@ _HEADER = re.compile(r"^\s*([A-Za-z]+)\s*(?:[\[(_ ]\s*([A-Za-z/]+)\s*[\])]?)?\s*
 
 @dataclass(frozen=True)
 class PathPoints:
-    """Points as a file gives them. SI units, in the axes of the file."""
+    """Points of a path file. SI units, in the axes of the file."""
 
     points: Array
     """(k, 3) m; z is 0 where the file has none"""

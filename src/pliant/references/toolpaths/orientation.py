@@ -1,4 +1,4 @@
-"""How a tool stands on a surface: its z axis into it, leaned over in the direction of travel."""
+"""Orientation of a tool on a surface: its z axis into the surface, tilted relative to the direction of travel."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ def tool_rotations(
         places: (k, 3) m.
         normals: (k, 3) outward.
         heading: (3,) direction that the tool's x axis follows as far as it can, world axes.
-        tilt: rad, from the normal in the direction of travel: the tool's end runs behind.
+        tilt: rad, from the normal in the direction of travel: the tool's end trails.
         lean: rad, from the normal to the left of the direction of travel.
-        smooth: m of the way before and behind over which the direction of travel is a mean, so that the tilt turns
-            over continuously where the way turns back.
+        smooth: m of path length before and after a point over which the direction of travel is averaged, so that the
+            tilt changes continuously at a reversal.
 
     Returns:
         R_world_tool (k, 3, 3): z = −n but for tilt and lean.
@@ -52,7 +52,7 @@ def _axes(z: Array, heading: Array) -> tuple[Array, Array, Array]:
 
 
 def _smooth_travel(places: Array, window: float) -> Array:
-    """(k, 3) mean unit direction of travel within ± window m of the way; shorter than one where the way turns."""
+    """(k, 3) mean unit direction of travel within ± window m of path length; shorter than one where the path turns."""
     steps = np.diff(places, axis=0)
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
     low, high = np.maximum(s - window, 0.0), np.minimum(s + window, s[-1])

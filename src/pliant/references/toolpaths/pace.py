@@ -1,4 +1,4 @@
-"""How fast a path is run: at its speed where bends allow it, from rest to rest, within a limit of acceleration."""
+"""Timing of a path: from rest to rest at its speed, slower in bends, within a limit of acceleration."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 from pliant.spatial import Array
 
 _STILL = 1e-12  # m/s
-_SHARP = 0.3  # rad between two steps: the way turns back or has a corner, where only standing still is slow enough
+_SHARP = 0.3  # rad between two steps: a reversal or a corner, at which the tool must stop
 
 
 class PathPace(NamedTuple):
-    """When the points of a path are passed, and how fast."""
+    """Times and speeds at the points of a path."""
 
     times: Array
     """(k,) s, from zero"""
@@ -24,8 +24,8 @@ class PathPace(NamedTuple):
     """(k,) m/s at each point"""
 
     def way_at(self, times: Array) -> Array:
-        """(m,) m of the way that are done at times in s: from point to point the acceleration is constant, and where
-        both are standstills the way is sped up half of it and slowed down the other half."""
+        """(m,) m, path length at times in s: from point to point the acceleration is constant; between two stops it
+        accelerates over the first half and decelerates over the second."""
         i = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
         span, length = self.times[i + 1] - self.times[i], self.way[i + 1] - self.way[i]
         u = np.clip((times - self.times[i]) / span, 0.0, 1.0)
@@ -79,5 +79,5 @@ def _in_bends(steps: Array, ds: Array, acceleration: float) -> Array:
     allowed = np.sqrt(acceleration / np.maximum(curvature, 1e-9))
     allowed[turn > _SHARP] = 0.0
     allowed = np.concatenate([[math.inf], allowed, [math.inf]])
-    # a bend rules the points beside it, too
+    # a bend also limits the neighbouring points
     return np.minimum(allowed, np.minimum(np.append(allowed[1:], math.inf), np.insert(allowed[:-1], 0, math.inf)))

@@ -1,4 +1,4 @@
-"""Patterns in a plane: rows of points in metres, about the middle of the pattern unless it says otherwise.
+"""Patterns in a plane: polylines in metres, centred unless stated otherwise.
 
 Straight pieces are given by their corners, curves by points closer than `STEP`.
 """
@@ -17,7 +17,7 @@ STEP = 2e-4  # m between two points of a curve
 
 
 def raster(size: tuple[float, float], spacing: float) -> Array:
-    """Lines along u, one beside the other, joined at alternating ends. The lines fill `size`; `spacing` is met or less.
+    """Parallel lines along u, joined at alternating ends. The lines fill `size`; `spacing` is met or less.
 
     Args:
         size: m along u and v.
@@ -48,11 +48,11 @@ def spiral(size: tuple[float, float], spacing: float) -> Array:
 
 
 def circle(size: tuple[float, float], turns: float) -> Array:
-    """Round and round, from (+u, 0) towards +v; an ellipse if the sizes differ.
+    """Circle from (+u, 0) towards +v, several turns; an ellipse if the sizes differ.
 
     Args:
         size: m, diameters along u and v.
-        turns: how often, any part of one too.
+        turns: number of turns, also a fraction.
     """
     _positive("size", *size)
     _positive("turns", turns)

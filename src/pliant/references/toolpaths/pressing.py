@@ -1,4 +1,4 @@
-"""How hard a tool presses along a path, along a normal that turns."""
+"""Normal force along a path whose normal turns."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class PressingForce:
     """
 
     knots: tuple[float, ...]
-    """share of the way (0…1), or s since the start of the path; increasing"""
+    """share of the path length (0…1), or s since the start of the path; increasing"""
     forces: tuple[float, ...]
     """N, one per knot"""
     unit: Literal["share", "s"] = "share"
@@ -43,7 +43,7 @@ class PressingForce:
 
     @classmethod
     def constant(cls, force: float) -> PressingForce:
-        """The same force in N all the way."""
+        """A constant force in N."""
         return cls((0.0,), (float(force),))
 
     @property
@@ -58,7 +58,7 @@ class PressingForce:
 
 
 class _OverShare(Trajectory):
-    """F(s(t)) for a force over the share of the way."""
+    """F(s(t)) for a force over the share of the path length."""
 
     def __init__(self, lines: Waypoints, share: Trajectory) -> None:
         self._lines, self._share = lines, share

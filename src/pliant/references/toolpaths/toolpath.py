@@ -22,7 +22,7 @@ _KNOT = 0.01  # s between two knots of the splines
 
 @dataclass(frozen=True)
 class PathMotion:
-    """How a path is run."""
+    """Speed, acceleration and tool orientation along a path."""
 
     speed: float = 0.05
     """m/s on the surface, where the file gives none"""
@@ -63,7 +63,7 @@ class Toolpath:
     task: QuaternionSpline
     """R_world_task: third axis along the normal"""
     share: Spline
-    """(1,) part of the way that is done, 0…1"""
+    """(1,) completed share of the path length, 0…1"""
     force: Spline | None = None
     """(1,) N along the normal, where the file has a column for it"""
 
@@ -132,7 +132,7 @@ def through(
 
 
 def resting(place: Array, normal: Array, time: float, motion: PathMotion, heading: Array) -> Toolpath:
-    """A path that stays at a place (3,) m of a surface with normal (3,) for a time in s."""
+    """A path that stays at a point (3,) m of a surface with normal (3,) for a time in s."""
     times = np.linspace(0.0, time, 5)
     places, normals = np.tile(place, (5, 1)), np.tile(normal, (5, 1))
     task = np.array([quaternion(R) for R in task_rotations(normals, heading)])
@@ -153,7 +153,7 @@ def timed(places: Array, normals: Array, speed: Array, motion: PathMotion, headi
     moved = np.concatenate([[True], np.linalg.norm(np.diff(places, axis=0), axis=1) > 1e-9])
     places, normals, speed = places[moved], normals[moved], speed[moved]
     if len(places) < 3:
-        raise ConfigError("a path needs a length: all its points lie in one place")
+        raise ConfigError("a path needs a length: all its points are the same")
     run = pace(places, speed, motion.acceleration)
     times = np.linspace(0.0, run.times[-1], max(math.ceil(run.times[-1] / _KNOT), 4) + 1)
     done = run.way_at(times)
@@ -180,5 +180,5 @@ def _corner_radius(motion: PathMotion) -> float:
 
 
 def _way(points: Array) -> Array:
-    """(k,) m of the way to each point."""
+    """(k,) m, path length to each point."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])

@@ -1,4 +1,4 @@
-"""A part of a longer trajectory or turning, with a clock of its own."""
+"""A part of a longer trajectory or rotation, with its own time."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pliant.references.trajectories.trajectory import Point, Trajectory
 
 
 class Excerpt(Trajectory):
-    """Another trajectory from one time to another; held before and after.
+    """The part of a trajectory between two times; held before and after.
 
     Args:
         inner: the whole.

@@ -43,7 +43,7 @@ class Turning(ABC):
 
 
 class Fixed(Turning):
-    """One orientation for ever. Args: rotation: R_world_frame (3, 3)."""
+    """A constant orientation. Args: rotation: R_world_frame (3, 3)."""
 
     def __init__(self, rotation: Array) -> None:
         R = np.array(rotation, dtype=np.float64)
@@ -58,7 +58,7 @@ class Fixed(Turning):
 
 
 class WarpedTurning(Turning):
-    """A turning whose clock runs differently."""
+    """A rotation over time with another time scaling."""
 
     def __init__(self, inner: Turning, warp: Warp) -> None:
         self.inner, self.warp = inner, warp

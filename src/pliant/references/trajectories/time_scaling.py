@@ -1,4 +1,4 @@
-"""Clocks for trajectories: how the phase of a path runs with time."""
+"""Time scaling of trajectories: path time as a function of time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pliant.errors import ConfigError
 
 
 class Warp(ABC):
-    """Maps time in s to the phase φ in s at which a trajectory is read."""
+    """Maps time in s to the path time φ in s at which a trajectory is evaluated."""
 
     @abstractmethod
     def at(self, time: float) -> tuple[float, float, float]:
@@ -18,13 +18,13 @@ class Warp(ABC):
 
     @abstractmethod
     def time_of(self, phase: float) -> float:
-        """The time at which a phase, in s, is reached."""
+        """The time at which a path time, in s, is reached."""
 
 
 @dataclass(frozen=True)
 class EaseIn(Warp):
     """Starts from rest: dφ/dt rises from 0 to 1 along a quintic step within `seconds`, so that φ has three continuous
-    derivatives. From then on the phase lags behind the time by half of `seconds`."""
+    derivatives. From then on the path time lags behind the time by half of `seconds`."""
 
     seconds: float
 

@@ -67,7 +67,7 @@ def positive(value: float, name: str, unit: str) -> float:
 
 
 class Hold(Trajectory):
-    """Stays at one value for ever."""
+    """A constant value."""
 
     def __init__(self, value: npt.ArrayLike) -> None:
         constant = vector(value, "the held value")
@@ -80,7 +80,7 @@ class Hold(Trajectory):
 
 
 class Warped(Trajectory):
-    """A trajectory whose clock runs differently: the path stays, the timing changes."""
+    """A trajectory with another time scaling: the path is the same, the timing changes."""
 
     def __init__(self, inner: Trajectory, warp: Warp) -> None:
         self.inner, self.warp = inner, warp
@@ -110,7 +110,7 @@ class Sum(Trajectory):
 
 
 class Blend(Trajectory):
-    """Goes over from one trajectory to another within `seconds`, twice continuously differentiable.
+    """Blends one trajectory into another within `seconds`, twice continuously differentiable.
 
     x(t) = a(t) + s (b(t) − a(t)) with the quintic step s, so that it starts as `first` and ends as `second`.
     """

@@ -1,1 +1,1 @@
-"""Contact laws and their numbers."""
+"""Contact laws and their parameters."""

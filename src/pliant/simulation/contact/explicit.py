@@ -34,7 +34,7 @@ class ContactPair:
     form: SampledMesh | Solid | None = None
     """the surface of the second, in its axes; None: its own shape"""
     tool: bool = False
-    """the first is a tool that is no ball: its points share the material"""
+    """the first is a tool that is not a sphere: its contact points share the material"""
 
 
 @dataclass(slots=True)
@@ -91,7 +91,7 @@ class ExplicitContacts:
         return state
 
     def advance(self, state: ContactState, steps: int) -> None:
-        """Makes physics steps. Forces follow every one of them.
+        """Makes physics steps, and updates the forces after each.
 
         Raises:
             RunFailedError: a force or a velocity is not finite.
@@ -121,7 +121,7 @@ class ExplicitContacts:
         return total
 
     def touching(self, state: ContactState, index: int) -> bool:
-        """Whether pair number `index` pushes."""
+        """Whether pair number `index` is in contact."""
         return bool(np.any(state.force[self._slots[index]]))
 
     def _fill(self, loop: ContactLoop) -> list[slice]:
@@ -162,7 +162,7 @@ def explicit_contacts(
     Args:
         model: compiled; `timestep` set.
         start: (n,) configuration of the robot, whose joints come first.
-        pairs: two geoms and what they feel like to each other.
+        pairs: two geoms and their contact properties.
         hollow: geoms whose material is outside of them.
         forms: geoms that are the frame of a mesh, a hole or an edge → its surface.
         tools: geoms that are tools of several points.

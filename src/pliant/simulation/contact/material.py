@@ -1,4 +1,4 @@
-"""Numbers of one explicit contact, and the physics step that they bear."""
+"""Parameters of one explicit contact, and the largest stable physics step."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CRITICAL_VELOCITY = 1e-3  # m/s, [HapFIC] sec. III
 
 @dataclass(frozen=True)
 class ContactMaterial:
-    """Numbers of one contact, in the order of the compiled law."""
+    """Parameters of one contact, in the order of the compiled law."""
 
     stiffness: float
     """K, N/m, of every contact point"""
@@ -36,8 +36,8 @@ class ContactMaterial:
     def of(cls, surface: Surface, inverse_mass: float) -> ContactMaterial:
         """The material of a surface.
 
-        The bristle is as stiff as the surface; its damping is the surface's, but at most critical for the mass that
-        slides, since more would only ask for shorter steps.
+        The bristle is as stiff as the surface; its damping is the surface's, but at most critical for the sliding mass,
+        since more would only require shorter steps.
 
         Args:
             surface: of the thing that is touched.

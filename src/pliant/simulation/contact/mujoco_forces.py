@@ -1,4 +1,4 @@
-"""The contact forces of MuJoCo's own law, read from a world."""
+"""Contact forces of MuJoCo's own law."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pliant.spatial import Array, cross
 def contact_wrenches(
     model: mujoco.MjModel, data: mujoco.MjData, frames: Mapping[int, str], sites: Mapping[str, int]
 ) -> tuple[dict[str, Array], frozenset[str]]:
-    """Sums the contact forces on every frame that can touch.
+    """Sums the contact forces on every contact frame.
 
     Args:
         model: compiled.
@@ -22,7 +22,7 @@ def contact_wrenches(
         sites: frame → its site.
 
     Returns:
-        Frame → (6,) wrench at its origin in world axes, zero where nothing touches; the frames that touch.
+        Frame → (6,) wrench at its origin in world axes, zero without contact; the frames in contact.
     """
     wrenches = {frame: np.zeros(6) for frame in frames.values()}
     touching: set[str] = set()

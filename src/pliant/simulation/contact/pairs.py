@@ -1,4 +1,4 @@
-"""Which geoms of a scene can touch, and what they feel like to each other."""
+"""Contact pairs of a scene, and their contact properties."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ PairOfGeoms = tuple[str, str, Surface]
 
 
 def pairs_of(scene: Scene, robot_geoms: Iterable[str]) -> list[PairOfGeoms]:
-    """Every pair that can touch.
+    """All contact pairs.
 
-    The robot is rigid, so a thing's own surface rules its contact with the robot. Between two things it is that of the
-    one that can move, or of the softer one if both can.
+    The robot is rigid, so the surface of a thing determines its contact with the robot. Between two things it is the
+    surface of the movable one, or of the softer one if both can move.
 
     Args:
         scene: the things.

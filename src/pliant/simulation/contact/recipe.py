@@ -14,11 +14,11 @@ from pliant.errors import ConfigError
 from pliant.simulation.surface import Surface
 
 _IMPEDANCE = 1e-4
-_TANGENTIAL_DAMPING = 300.0  # N s/m of viscosity below the friction limit; more chatters on a light tool
+_TANGENTIAL_DAMPING = 300.0  # N s/m of viscosity below the friction limit; with more, a light tool chatters
 
 
 def add_pair(spec: mujoco.MjSpec, name: str, geom_1: str, geom_2: str) -> None:
-    """Lets two geoms touch; `apply_surface` gives the pair its numbers once the model is compiled."""
+    """Adds a contact pair of two geoms; `apply_surface` sets its parameters once the model is compiled."""
     pair = spec.add_pair(name=name, geomname1=geom_1, geomname2=geom_2)
     pair.condim = 3
     pair.solimp = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2.0]
@@ -32,7 +32,7 @@ def apply_surface(model: mujoco.MjModel, pair_name: str, surface: Surface) -> No
     Args:
         model: compiled; `timestep` set.
         pair_name: of the pair.
-        surface: what the two geoms feel like to each other.
+        surface: contact properties of the two geoms.
 
     Raises:
         ConfigError: the physics step is too long for that stiffness and damping with the lighter of the two bodies.

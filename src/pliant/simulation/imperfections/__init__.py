@@ -1,1 +1,1 @@
-"""What is imperfect about a robot: sensors, drives, gears, computation time."""
+"""Imperfections of a robot: sensors, drives, gears, computation time."""

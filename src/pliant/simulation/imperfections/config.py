@@ -1,4 +1,4 @@
-"""What is imperfect about a robot: the configuration of the whole chain, with the sets of values that papers print."""
+"""Imperfections of a robot: the configuration of the whole chain, with the values of the papers."""
 
 from __future__ import annotations
 

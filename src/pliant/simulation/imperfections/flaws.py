@@ -1,4 +1,4 @@
-"""The compiled chain of an imperfect robot (cpp/plant/flaws.cpp), out of its configuration."""
+"""The compiled chain of an imperfect robot (cpp/plant/flaws.cpp), made from its configuration."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def flaws_of(config: Imperfections, sizes: Sizes) -> Flaws:
 
 
 def draws_of(config: Imperfections, sizes: Sizes, seed: int) -> Draws:
-    """Where the chain's random numbers come from."""
+    """The random numbers of the chain."""
     noise = _noise(config, sizes.n)
     felt = max(config.sensing.noise_force, config.sensing.noise_moment) > 0.0
     wrenches = wrench_sources(sizes.sensors)
@@ -81,7 +81,7 @@ def draws_of(config: Imperfections, sizes: Sizes, seed: int) -> Draws:
 
 
 def drawn_once(config: Imperfections, n: int, seed: int) -> Mapping[str, Array]:
-    """What is drawn at the start of a run, each (n,): gain and bias of the gears, of the torque sensors."""
+    """Random values of a run, each (n,): gain and bias of the gears, of the torque sensors."""
     mismatch = generator(seed, "sensing.mismatch")
     return {
         "gain": generator(seed, "actuation.gain").uniform(*config.actuation.gain, n),

@@ -21,8 +21,8 @@ def per_joint(value: float | tuple[float, ...], n: int, name: str, *, fitted: bo
         value: one number for all joints, or one for each from the base outwards.
         n: number of joints.
         name: of the value, for the error.
-        fitted: the numbers are those of another robot: joints beyond them take the last one, and what is too many is
-            left out.
+        fitted: the numbers are those of another robot: joints beyond them take the last one, and surplus values are
+            ignored.
 
     Raises:
         ShapeError: another number of values than there are joints, and not `fitted`.

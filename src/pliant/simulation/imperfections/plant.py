@@ -1,4 +1,4 @@
-"""An imperfect robot round a perfect one: any plant, with late and noisy sensors, drives, gears and computation time.
+"""A plant with imperfections around a perfect one: delayed and noisy sensors, drives, gears and computation time.
 
 command ─▶ computation delay ─▶ torque loop ─▶ actuation ─▶ plant ─▶ ripple ─▶ sensing ─▶ measurement
                                      ▲                                             │
@@ -32,9 +32,9 @@ class ImperfectWorld:
     inner: Any
     """state of the plant inside"""
     memory: Array
-    """what the chain remembers, one row of numbers (cpp/plant/flaws.cpp)"""
+    """state of the chain, one row of numbers (cpp/plant/flaws.cpp)"""
     draws: Draws
-    """where its random numbers come from"""
+    """its random numbers"""
     time: float
     """s, of the last reading"""
 
@@ -134,7 +134,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         self._period = compiled_period_of(self.inner)
 
     def _in_python(self, command: Command, draws: Array, world: ImperfectWorld) -> Array:
-        """A period round a plant that is not compiled. Returns a reading in a row."""
+        """A period with a plant that is not compiled. Returns a reading in a row."""
         n, flaws, memory = self._sizes.n, self._flaws, world.memory
         out, asked, sent = np.empty(flaws.reading_size), np.empty(n), np.zeros(n)
         wanted = np.ascontiguousarray(command.torque, dtype=np.float64)
@@ -158,7 +158,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         return true
 
     def _row(self, true: Measurement) -> Array:
-        """What perfect sensors say, as the chain takes it."""
+        """The perfect measurement, in the format of the chain."""
         felt = [true.wrenches[frame] for frame in self._sizes.sensors]
         return np.concatenate([true.q, true.v, true.torque, *felt])
 

@@ -1,4 +1,4 @@
-"""Force ripple from the gearing: an oscillation whose pitch follows the joints' speed ([FFMPC] sec. VIII-C;
+"""Force ripple from the gearing: an oscillation whose frequency follows the joints' speed ([FFMPC] sec. VIII-C;
 cpp/plant/flaws.cpp).
 
 The published hardware shows 30–40 Hz during polishing, a frequency proportional to speed and an amplitude that grows
@@ -13,7 +13,7 @@ from pliant.quantity import quantity
 
 
 class RippleConfig(Config):
-    """How strong the ripple is at a reference speed and force, and how fast it oscillates there."""
+    """Amplitude and frequency of the ripple at a reference speed and force."""
 
     amplitude: float = quantity(
         0.0, "N", "at the reference speed and force; 0 switches the ripple off", ge=0.0, le=100.0

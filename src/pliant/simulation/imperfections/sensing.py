@@ -1,8 +1,8 @@
-"""Sensors that are late and noisy ([FFMPC] eq. 30–32; cpp/plant/flaws.cpp).
+"""Sensors with delay and noise ([FFMPC] eq. 30–32; cpp/plant/flaws.cpp).
 
 The mismatch between joint torque sensors and force/torque sensor that the published hardware shows ([FFMPC] sec.
-VIII-C) is a gain and an offset of each joint torque sensor, drawn once per run. What was sent is not late: a controller
-knows it without a sensor.
+VIII-C) is a gain and an offset of each joint torque sensor, drawn once per run. The torque that was sent has no delay,
+because a controller knows it without a sensor.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from pliant.simulation.imperfections.link_config import PerJoint
 class SensingConfig(Config):
     """Delay and noise. Standard deviations are those of white Gaussian noise on every reading; 0 switches one off."""
 
-    delay: float = quantity(0.0, "s", "age of every reading", ge=0.0, le=1.0)
+    delay: float = quantity(0.0, "s", "delay of every reading", ge=0.0, le=1.0)
     delay_torque: float | None = quantity(
-        None, "s", "age of the joint torque sensors' readings; none: as the others", ge=0.0, le=1.0
+        None, "s", "delay of the joint torque sensors; none: as the others", ge=0.0, le=1.0
     )
-    delay_force: float = quantity(0.0, "s", "further age of the force/torque sensors' readings", ge=0.0, le=1.0)
+    delay_force: float = quantity(0.0, "s", "additional delay of the force/torque sensors", ge=0.0, le=1.0)
     noise_q: PerJoint = quantity(0.0, "rad", "standard deviation of the joint positions")
     noise_v: PerJoint = quantity(0.0, "rad/s", "standard deviation of the joint velocities")
     noise_torque: PerJoint = quantity(0.0, "N·m", "standard deviation of the joint torque sensors")
     fit_joints: bool = quantity(
         False,
         "1",
-        "values per joint are those of another robot: joints beyond them take the last, what is too many is left out",
+        "values per joint are those of another robot: further joints take the last value, surplus values are ignored",
     )
     noise_force: float = quantity(
         0.0, "N", "standard deviation of the force part of force/torque sensors", ge=0.0, le=1e3

@@ -3,8 +3,8 @@ cpp/plant/flaws.cpp).
 
     τ_m = τ_d − K_P (τ̂ − τ_d) − K_I ∫(τ̂ − τ_d) − K_D dτ̂/dt
 
-The printed equation has τ̂ in its last term where its rate is meant. Where the motor cannot give more, the integral
-waits, so that it does not wind up.
+The printed equation has τ̂ in its last term where its rate is meant. When the motor is saturated, the integral is held
+(anti-windup).
 """
 
 from __future__ import annotations

@@ -65,11 +65,11 @@ class Check(Config):
     begin: float = quantity(0.0, "s", "start of the window; the command's time for `settle`", ge=0.0)
     end: float | None = quantity(None, "s", "end of the window; none: of the run", ge=0.0, le=1e9)
     axis: int = Field(default=2, ge=0, le=2, description="x, y, z")
-    wanted: float | None = quantity(None, "N", "force that was asked for; none: as the log has it", ge=-1e6, le=1e6)
+    wanted: float | None = quantity(None, "N", "desired force; none: from the log", ge=-1e6, le=1e6)
     before: float | None = quantity(
         None, "N", "force before a step; none: the true force at its command", ge=-1e6, le=1e6
     )
-    relative: bool = Field(default=False, description="as a share of the force that was asked for")
+    relative: bool = Field(default=False, description="as a share of the desired force")
     target: float | None = quantity(None, "that of the metric", "bound of the metric", ge=-1e9, le=1e9)
 
 
@@ -78,8 +78,8 @@ class HapticCaseConfig(CaseConfig):
 
     controller: str = Field(
         default="haptic",
-        description="haptic: pliant's; haptic-paper: as printed, but for the planner; haptic-hold: impedance alone; or"
-        " any other, see `pliant list controllers`",
+        description="haptic: pliant's; haptic-paper: as printed, except the planner; haptic-hold: impedance alone; or"
+        " another, see `pliant list controllers`",
     )
     robot: str = Field(default="leg3", description="catalogue name, or path of a URDF or MJCF file")
     frame: str = Field(default="foot", description="frame that presses; it carries the force sensor")
@@ -98,11 +98,11 @@ class HapticCaseConfig(CaseConfig):
     torque_step: TorqueStep = DEFAULT_SHARE
     start: tuple[float, ...] | None = quantity(None, "rad", "joint positions at the start; none: the robot's home")
     steps: tuple[Step, ...] = Field(
-        min_length=1, description="what the user does, in order of time; the first one gives target and force"
+        min_length=1, description="steps of the user, in order of time; the first one gives target and force"
     )
     online: OnlineChanges | None = Field(default=None, description="random changes, after the steps")
     random: bool = Field(default=False, description="draw surface, masses and force from the seed")
-    checks: tuple[Check, ...] = Field(default=(), description="what the run is judged by")
+    checks: tuple[Check, ...] = Field(default=(), description="metrics of the run")
     snapshots: tuple[float, ...] = quantity((), "s", "moments that are drawn")
 
     @field_validator("controller")

@@ -1,4 +1,4 @@
-"""What a haptic run is judged by: each check of its configuration becomes one metric, on true signals."""
+"""Metrics of a haptic run: each check of its configuration becomes one metric, on true signals."""
 
 from __future__ import annotations
 

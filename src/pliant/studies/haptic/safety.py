@@ -1,4 +1,4 @@
-"""What is unsafe about a configuration, said before it runs: gains, actuators, forces and places out of reach."""
+"""Warnings about an unsafe configuration, before a run: gains, actuators, forces, and targets out of reach."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ _Scale = Annotated[float, Field(ge=1e-3, le=1e3)]
 
 
 class Material(Config):
-    """What a thing feels like. Defaults: the rigid objects of [HapFIC] sec. III."""
+    """Contact properties of a thing. Defaults: the rigid objects of [HapFIC] sec. III."""
 
     stiffness: float = quantity(1e6, "N/m", "K of every contact point", gt=0.0, le=1e9)
     damping: float = quantity(1e4, "N s/m", "D", ge=0.0, le=1e9)
@@ -54,7 +54,7 @@ class BallConfig(Config):
 
 
 class HapticScene(Config):
-    """What stands around the leg; contacts follow the explicit law with stiction."""
+    """The things around the leg; contacts follow the explicit law with stiction."""
 
     floor: Floor | None = Field(default=Floor(), description="none: without")
     box: BoxConfig | None = None
@@ -66,7 +66,7 @@ class Hardware(Config):
     """How the leg's joints, drives and sensors behave."""
 
     compensation: Literal["none", "gravity", "gravity+coriolis"] = Field(
-        default="gravity", description="what the leg compensates by itself; the paper does not say"
+        default="gravity", description="what the leg compensates by itself; the paper does not state it"
     )
     joint_damping: float = quantity(0.0, "N·m s/rad", "in the joints' mechanics", ge=0.0, le=1e4)
     bandwidth: float | None = quantity(

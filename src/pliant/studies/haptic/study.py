@@ -26,7 +26,7 @@ class HapticStudy(Study[HapticCaseConfig]):
         return build(config)
 
     def verdict(self, config: HapticCaseConfig, metrics: Sequence[Metric]) -> str | None:
-        """A random scene in which a bound broke is a failed run: it names the seed that replays it."""
+        """A random scene in which a bound is exceeded is a failed run; the failure has the command that repeats it."""
         missed = [f"{m.name} {m.value:.3g} {m.unit}".strip() for m in metrics if m.met is False]
         if not config.random or not missed:
             return None

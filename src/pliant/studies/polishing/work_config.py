@@ -1,5 +1,4 @@
-"""Typed configuration of the work: table, timetable of the tool, pushes by a person. What the task file says is its
-default."""
+"""Typed configuration of table, timing of the tool, and pushes. The defaults are those of the task file."""
 
 from __future__ import annotations
 
@@ -29,7 +28,7 @@ class Table(Config):
     """The surface that is polished. The tool comes down at y = 0."""
 
     height: float = quantity(TABLE.pose.xyz[2], "m", "z of its surface", ge=-10.0, le=10.0)
-    height_error: float = quantity(0.0, "m", "by how much the controller believes it higher", ge=-1.0, le=1.0)
+    height_error: float = quantity(0.0, "m", "height error of the table in the controller", ge=-1.0, le=1.0)
     x: float = quantity(TABLE.pose.xyz[0], "m", "x at which the tool comes down", ge=-10.0, le=10.0)
     stiffness: float = quantity(TABLE.stiffness, "N/m", "of the contact", gt=0.0, le=1e8)
     damping: float = quantity(TABLE.damping, "N·s/m", "of the contact", ge=0.0, le=1e8)
@@ -38,7 +37,7 @@ class Table(Config):
 
 
 class Work(Config):
-    """What the tool does. Times count from the start of the run."""
+    """Motion and force of the tool. Times count from the start of the run."""
 
     start: float = quantity(
         _over_table(START.xyz[2]), "m", "height over the table where the run starts", gt=0.0, le=10.0
@@ -61,7 +60,7 @@ class Work(Config):
     stop: float | None = quantity(
         None, "s", "when the circle has ended and the tool rests, pressed on; none: it goes on", gt=0.0, le=1e4
     )
-    found: bool = Field(default=False, description="contact begins when it is felt, not by the timetable")
+    found: bool = Field(default=False, description="contact begins when it is detected, not by the timetable")
 
 
 class RepeatedPushes(Config):

@@ -33,7 +33,7 @@ Span = Annotated[tuple[_Time, _Time], AfterValidator(in_order)]
 
 
 class StackPath(Config):
-    """What the tool does. It starts from rest within `ramp`."""
+    """Motion of the tool. It starts from rest within `ramp`."""
 
     kind: PathKind = Field(
         default="figure8",
@@ -63,7 +63,7 @@ class Joints(Config):
 
 
 class Wall(Config):
-    """A wall in the tool's way that nobody knows of."""
+    """A wall in the tool's path that is unknown to the controller."""
 
     x: float = quantity(0.07, "m", "where it stops the tool", ge=-10.0, le=10.0)
     stiffness: float = quantity(1e4, "N/m", "of the contact", gt=0.0, le=1e8)
@@ -131,7 +131,7 @@ class StackCaseConfig(CaseConfig):
         ge=0.0,
         lt=1.0,
     )
-    wall: Wall | None = Field(default=None, description="in the tool's way; none: without")
+    wall: Wall | None = Field(default=None, description="in the tool's path; none: without")
     pushes: RandomPushes | None = Field(default=None, description="on a frame; none: without")
     retuning: GainChanges | None = Field(default=None, description="while the robot moves; none: without")
 
@@ -141,7 +141,7 @@ class StackCaseConfig(CaseConfig):
 
     @property
     def windows(self) -> Mapping[str, tuple[float, float]]:
-        return {"what the tool does": (self.settled, self.duration)}
+        return {"motion of the tool": (self.settled, self.duration)}
 
     @property
     def settled(self) -> float:

@@ -1,4 +1,4 @@
-"""What a stack run is judged by."""
+"""Metrics of a stack run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a robot can do a task: as it is believed, and in the worlds that the seeds draw."""
+"""Whether a robot can do a task: as believed, and in the random worlds of the seeds."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _seeds(case: TaskCase, drawn: int) -> list[TaskCase]:
 
 
 def _course(case: TaskCase) -> Course:
-    """Where the first frame of a list goes if no phase ends before it must."""
+    """Path of the first frame of a list if every phase lasts as long as possible."""
     made = listed(case)
     times = instants_of(made.duration)
     if made.tracked is not None:

@@ -1,4 +1,4 @@
-"""A task that is a list of phases, as stages, things and changes; what no controller can do is refused here."""
+"""A task that is a list of phases, as stages, things and changes; tasks that no controller can do are refused here."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The world of a task as it really is: a true surface, a true robot, pushes."""
+"""The true world of a task: surface, robot, pushes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads the records of an MCAP file fast, and as far as a damaged file goes."""
+"""Reads the records of an MCAP file fast, and up to the first damage of a file."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Piece:
 
 @dataclass
 class Contents:
-    """What a file held."""
+    """The contents of a file."""
 
     channels: dict[int, Channel] = field(default_factory=dict)
     schemas: dict[int, Schema] = field(default_factory=dict)
@@ -111,7 +111,7 @@ def read(name: str, data: bytes) -> Contents:
         what = "is empty" if not data else "is not an MCAP file (wrong first bytes)"
         raise OutputError(f"{name} {what}; a pliant log ends in .mcap")
     found, whole = Contents(), False
-    with contextlib.suppress(Exception):  # whatever damaged bytes lead to: what was read until then counts
+    with contextlib.suppress(Exception):  # any error of damaged bytes: what was read before is kept
         for opcode, start, end in _records(data, len(_MAGIC)):
             if opcode == Opcode.CHUNK:
                 _take(found, _Chunk(data, start, end))

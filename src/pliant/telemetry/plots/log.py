@@ -1,4 +1,4 @@
-"""The figures that any log gives."""
+"""General figures of a log."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The way of a frame through a plane of the task space: reference against actual."""
+"""Path of a frame in a plane of the task space: reference and actual."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MM = 1e3  # mm per m
-_PAPER = "#d9dde2"  # on which white is seen
+_PAPER = "#d9dde2"  # background on which white is visible
 _ERRORS = ("#0b6fb8", "#3fb0e0", "#e0a100", "#c22f2f")
 
 
 @dataclass(frozen=True, slots=True)
 class Path2D:
-    """One way through space."""
+    """One path."""
 
     label: str
     position: Array
@@ -38,7 +38,7 @@ def task_path(
     wall: float | None = None,
     by_error: bool = False,
 ) -> Figure:
-    """Ways through a plane, drawn to scale over their reference.
+    """Paths in a plane, to scale, with their reference.
 
     Args:
         paths: of one or more runs.
@@ -117,7 +117,7 @@ def _draw_wall(ax: Axes, wall: float) -> None:
 
 
 def coloured_way(place: Array, value: Array, label: str, title: str = "") -> Figure:
-    """A way on a flat surface, drawn to scale, with a signed value as colour: white is none.
+    """A path on a flat surface, to scale, with a signed value as colour: white is zero.
 
     Args:
         place: (k, 2) m; the axes begin at its first row.
@@ -129,7 +129,7 @@ def coloured_way(place: Array, value: Array, label: str, title: str = "") -> Fig
     ax = made.add_subplot()
     style.dress(ax, "along, mm", "across, mm")
     ax.set_facecolor(_PAPER)
-    most = float(np.nanpercentile(np.abs(value), 99.0)) or 1.0  # one peak must not pale all the rest
+    most = float(np.nanpercentile(np.abs(value), 99.0)) or 1.0  # one peak must not make all other values pale
     dots = ax.scatter(_MM * place[:, 0], _MM * place[:, 1], c=value, s=9.0, cmap="RdBu_r", vmin=-most, vmax=most)
     ax.plot(*(_MM * place[0]), marker="o", markersize=7.0, markerfacecolor="none", color=style.INK, linestyle="none")
     ax.annotate("start", _MM * place[0], (6.0, 6.0), textcoords="offset points", fontsize=style.SMALL, color=style.INK)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def dots(rows: Mapping[str, Array], xlabel: str, title: str = "", targets: Mapping[str, float] | None = None) -> Figure:
-    """A dot per run, a bar at their mean, how many failed at the right edge.
+    """A dot per run, a bar at their mean, the number of failed runs at the right edge.
 
     Args:
         rows: label → (runs,) values above zero; NaN for a run that failed.

@@ -16,7 +16,7 @@ INK = "#20262e"
 MUTED = "#6b7480"
 GRID = "#e7eaee"
 REFERENCE = "#9aa3ae"
-"""what was asked for"""
+"""colour of references"""
 ALARM = "#c22f2f"
 PALETTE = ("#0b6fb8", "#d95f0e", "#148f6b", "#b2489a", "#e0a100", "#3fb0e0", "#6b4fb3", "#7a6a53")
 """the order is such that neighbours differ in lightness as well as in hue"""
@@ -28,7 +28,7 @@ _DPI = 160
 
 def figure(width: float, height: float, title: str = "") -> Figure:
     """An empty figure. Args: width, height in inches; title above everything, aligned left."""
-    # here and not above: what only runs, lists or measures does not wait for matplotlib
+    # imported here, so that commands without figures do not load matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
