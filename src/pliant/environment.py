@@ -23,7 +23,7 @@ class Environment:
 
 
 @dataclass(frozen=True, slots=True)
-class FeltSurface:
+class EstimatedSurface:
     """Estimated pose of a surface, from the path of the contact: the believed surface, turned about a point and
     shifted."""
 

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.axis_modes import AxisModes
-from pliant.environment import Environment, FeltSurface
+from pliant.environment import Environment, EstimatedSurface
 from pliant.errors import ConfigError
 from pliant.spatial import Array, as_vector
 
@@ -69,7 +69,7 @@ class Estimate:
     """(n,) joint torque that the model does not explain, N·m, where an observer runs"""
     environments: Mapping[str, Environment] = field(default_factory=_nothing)
     """frame → stiffness and damping of its contact, where they are estimated"""
-    surfaces: Mapping[str, FeltSurface] = field(default_factory=_nothing)
+    surfaces: Mapping[str, EstimatedSurface] = field(default_factory=_nothing)
     """frame → pose of the surface that it has touched, where that is estimated"""
 
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.environment import FeltSurface
+from pliant.environment import EstimatedSurface
 from pliant.errors import ConfigError
 from pliant.estimation import SurfaceEstimator, SurfaceFitConfig
 from pliant.guard.sound import is_estimate
@@ -65,7 +65,7 @@ def gantry(tmp_path_factory: pytest.TempPathFactory) -> Robot:
 
 def touched(
     robot: Robot, believed: SurfaceGeometry, true: SurfaceGeometry, way: Array, noise: float, seed: int, each: int = 5
-) -> tuple[FeltSurface, Array, Array]:
+) -> tuple[EstimatedSurface, Array, Array]:
     """What is felt at the end of a way over the true surface, the true normal there, and the force's direction."""
     rng, inner = np.random.default_rng(seed), Felt()
     estimator = SurfaceEstimator(inner, robot, "tip", believed, SurfaceFitConfig(RADIUS, STIFFNESS))
@@ -157,7 +157,7 @@ def test_impossible_numbers_are_named(name: str, value: float) -> None:
 
 @pytest.mark.parametrize("part", ["turn", "normal", "normal_std"])
 def test_the_guard_notices_one_that_is_not_sound(part: str) -> None:
-    sound = FeltSurface(np.zeros(3), np.zeros(3), np.array([0.0, 0.0, 1.0]), math.inf)
+    sound = EstimatedSurface(np.zeros(3), np.zeros(3), np.array([0.0, 0.0, 1.0]), math.inf)
     broken = replace(sound, **{part: math.nan if part == "normal_std" else np.array([0.0, math.nan, 0.0])})
     zero = np.zeros(3)
     for surface, expected in ((sound, True), (broken, False)):

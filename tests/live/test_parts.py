@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pydantic import BaseModel
 
-from pliant.environment import Environment, FeltSurface
+from pliant.environment import Environment, EstimatedSurface
 from pliant.errors import ConfigError
 from pliant.live.link.mailbox import Mailbox
 from pliant.live.link.messages import Aim, Flow, PushNow, StepOnce
@@ -36,7 +36,7 @@ from pliant.simulation.imperfections.actuation import ActuationConfig
 def test_what_is_felt_is_a_line_with_units_and_uncertainty() -> None:
     felt = Environment(stiffness=19_876.0, damping=103.4, stiffness_std=312.0, damping_std=np.inf)
     assert environment_line("tool", felt) == "estimated at **tool**: stiffness 19900 ± 310 N/m, damping unknown"
-    turned = FeltSurface(np.zeros(3), np.radians([3.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0]), np.radians(0.25))
+    turned = EstimatedSurface(np.zeros(3), np.radians([3.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0]), np.radians(0.25))
     assert surface_line("tool", turned) == "estimated at **tool**: surface tilted by 5 ± 0.25 °"
 
 

@@ -16,7 +16,7 @@ from pliant.studies.haptic import STUDY
 from pliant.studies.haptic.config import HapticCaseConfig
 from pliant.studies.haptic.draws import drawn
 from pliant.studies.haptic.safety import reachable_force
-from pliant.studies.haptic.script import wishes
+from pliant.studies.haptic.script import user_settings
 from pliant.studies.haptic.steps_config import Step
 from pliant.telemetry.recorder import Recorder
 from tests.laws.impedance_strategies import profile_of
@@ -120,7 +120,7 @@ def test_draws_depend_on_the_seed_alone() -> None:
     assert first == again
     assert first.environment != other.environment
     online = drawn(STUDY.case("online"))
-    times = [time for time, _ in wishes(online, online.exploration)]
+    times = [time for time, _ in user_settings(online, online.exploration)]
     assert len(times) == 52  # the start, fifty changes, and quiet
     assert times == sorted(times)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
 
-from pliant.environment import Environment, FeltSurface
+from pliant.environment import Environment, EstimatedSurface
 from pliant.signals import Tick
 from pliant.telemetry import Log, Recorder, RunInfo
 
@@ -27,7 +27,9 @@ def with_estimates(k: int) -> Tick:
     if k < TOUCHED:
         return tick
     environment = Environment(2e4 + k, 100.0 + k, 30.0, 5.0)
-    surface = FeltSurface(k + np.array([0.1, 0.2, 0.3]), k * np.array([0.01, -0.02, 0.03]), np.eye(3)[k % 3], 0.01 * k)
+    surface = EstimatedSurface(
+        k + np.array([0.1, 0.2, 0.3]), k * np.array([0.01, -0.02, 0.03]), np.eye(3)[k % 3], 0.01 * k
+    )
     estimate = dataclasses.replace(tick.estimate, environments={"tool": environment}, surfaces={"tool": surface})
     return dataclasses.replace(tick, estimate=estimate)
 

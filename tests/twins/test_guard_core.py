@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pliant import _guard
-from pliant.environment import Environment, FeltSurface
+from pliant.environment import Environment, EstimatedSurface
 from pliant.guard import sound
 from pliant.guard.faults import Fault
 from pliant.signals import Estimate, Measurement, Preview, Reference, TaskReference
@@ -39,7 +39,8 @@ ODD: list[Any] = [
 ODD += [np.array([1.0, np.nan, 0.0]), np.full(N, np.inf), np.full(6, -np.inf), np.full(N, 1e200), np.ones((N, 1))]
 ODD += [np.nan, np.inf, {"foot": np.ones(6)}, {"knee": np.ones(6), "foot": np.ones(6)}, {"foot": MASKED}, (1, 2), ONES]
 ODD += [{"foot": replace(KNOWN, damping=np.nan)}, {"foot": replace(KNOWN, stiffness_std=-1.0)}, {"foot": np.ones(5)}]
-ODD += [{"foot": FeltSurface(ONES, ONES, ONES, np.nan)}, replace(AHEAD, time=np.ones(5)), replace(AHEAD, posture=ONES)]
+ODD += [replace(AHEAD, time=np.ones(5)), replace(AHEAD, posture=ONES)]
+ODD += [{"foot": EstimatedSurface(ONES, ONES, ONES, np.nan)}]
 ODD += [(replace(TASK, frame=3),), (replace(TASK, wrench=ONES),), (replace(TASK, rotation=np.full((3, 3), np.nan)),)]
 
 Look = Callable[[Any], bool]

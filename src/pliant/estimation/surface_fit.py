@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from pliant.environment import FeltSurface
+from pliant.environment import EstimatedSurface
 from pliant.errors import ConfigError
 from pliant.frozen import changed
 from pliant.interfaces import Estimator
@@ -64,7 +64,7 @@ class SurfaceFitState:
     summed: Array | None = None
     """(4,) sums over the readings since the last contact point: position (m) and normal force (N)"""
     count: int = 0
-    felt: FeltSurface | None = None
+    felt: EstimatedSurface | None = None
 
 
 class SurfaceEstimator(Estimator[SurfaceFitState]):
@@ -143,10 +143,10 @@ class SurfaceEstimator(Estimator[SurfaceFitState]):
     def _moved(self, state: SurfaceFitState) -> SurfaceGeometry:
         return self.surface.moved(state.shift_turn[:3], state.shift_turn[3:], state.pivot)
 
-    def _felt(self, position: Array, state: SurfaceFitState) -> FeltSurface:
+    def _felt(self, position: Array, state: SurfaceFitState) -> EstimatedSurface:
         assert state.pivot is not None
         normal = self._moved(state).normal(position)
         turned = skew(normal)  # a small turn ω moves the normal by ω × n
         spread = turned @ state.covariance[3:, 3:] @ turned.T
         std = math.sqrt(max(float(np.linalg.eigvalsh(spread)[-1]), 0.0))
-        return FeltSurface(state.pivot, state.shift_turn[3:], normal, std)
+        return EstimatedSurface(state.pivot, state.shift_turn[3:], normal, std)

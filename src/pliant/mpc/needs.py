@@ -18,7 +18,7 @@ _POSTURE_SHARE = 0.05
 """factor on the default posture cost, for tasks without phases or posture"""
 _TRACK = 1000.0  # 1/m²
 _POSITION = Term(weight=_TRACK, terminal_times_dt=False)
-_FELT = {
+_BY_CONTACT = {
     "free": PhaseCosts(translation=_POSITION),
     "contact": PhaseCosts(contact=True, translation=_POSITION.model_copy(update={"activation": (1.0, 1.0, 0.0)})),
 }
@@ -57,7 +57,7 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
             "period": max(config.period, believed.period),
             "gravity": believed.compensation == "none",
             "phase_by": "name" if named else "contact",
-            "phases": _phases(config, believed.phases) if named else _FELT,
+            "phases": _phases(config, believed.phases) if named else _BY_CONTACT,
             "compensation": _timed(config.compensation, believed),
             "contact": _on_surface(_as_stiff(robot, config, believed), believed),
         }

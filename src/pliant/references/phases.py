@@ -45,7 +45,7 @@ class PhaseState:
     """s at which a preview is due"""
 
 
-class Said(NamedTuple):
+class PhaseSample(NamedTuple):
     """Reference of a phase at one instant, before it is anchored. Arrays are shared: do not write into them."""
 
     position: Array
@@ -116,7 +116,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
 
     # ------------------------------------------------------------------ inside
 
-    def _work_out(self, index: int, elapsed: float) -> Said:
+    def _work_out(self, index: int, elapsed: float) -> PhaseSample:
         phase = self.phases[index]
         point, posture = phase.motion.at(elapsed), self.posture
         rotation, velocity, acceleration = self.rotation, np.zeros(6), np.zeros(6)
@@ -129,7 +129,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
         wrench = _NO_WRENCH if phase.wrench is None else phase.wrench.at(elapsed).value
         normal, turned = (None, None) if axes is None else (_normal(axes), axes.rotation)
         row = packed(point.value, rotation, velocity, wrench, turned, normal, posture)
-        return Said(point.value, rotation, velocity, acceleration, wrench, turned, normal, posture, row)
+        return PhaseSample(point.value, rotation, velocity, acceleration, wrench, turned, normal, posture, row)
 
     def _advanced(self, estimate: Estimate, state: PhaseState) -> PhaseState:
         """The present phase, from time and contact."""
@@ -200,7 +200,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
     def _task(self, state: PhaseState, time: float) -> TaskReference:
         return self._placed(state, self._said(state, time), time)
 
-    def _placed(self, state: PhaseState, said: Said, time: float) -> TaskReference:
+    def _placed(self, state: PhaseState, said: PhaseSample, time: float) -> TaskReference:
         """The reference of the phase, moved to its anchor."""
         phase = self.phases[state.index]
         offset = {"begin": state.begin, "touch": state.touch}.get(phase.anchor, 0.0)
@@ -214,7 +214,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
                 acceleration = acceleration + 2.0 * h_dot * n_dot + h_ddot * n
         return TaskReference(self.frame, position, said.rotation, velocity, acceleration, said.wrench, None, said.axes)
 
-    def _said(self, state: PhaseState, time: float) -> Said:
+    def _said(self, state: PhaseState, time: float) -> PhaseSample:
         """The reference of the phase on its own clock; times are rounded, so that an instant is the same in two
         ticks."""
         return self._at(state.index, round(max(time - state.start, 0.0), 9))

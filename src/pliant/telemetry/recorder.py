@@ -21,7 +21,7 @@ from pliant.telemetry.info import RunInfo
 from pliant.telemetry.log import CLOCK, Log
 from pliant.telemetry.mcap.topics import PREFIX, units_of
 from pliant.telemetry.mcap.writer import McapFile
-from pliant.telemetry.plan import Block, RowLayout
+from pliant.telemetry.row_layout import Block, RowLayout
 from pliant.telemetry.scene_topics import DrawnScene, SceneTopics
 from pliant.telemetry.schema import signature
 from pliant.telemetry.target import open_target, whole_seconds_below
@@ -68,7 +68,7 @@ class Recorder:
         self.path = Path(target) if isinstance(target, (str, Path)) else None
         self._stream, self._owned = open_target(target)
         self._channels, self._decimation = tuple(channels), decimation
-        self._plans: dict[tuple[Any, ...], RowLayout] = {}
+        self._layouts: dict[tuple[Any, ...], RowLayout] = {}
         self._signature: tuple[Any, ...] | None = None
         self._block: Block | None = None
         self._seen = 0
@@ -105,7 +105,7 @@ class Recorder:
             raise self._failure(self._error)
         block = self._room(tick)
         try:
-            block.plan.fill(tick, block)
+            block.layout.fill(tick, block)
         except (ValueError, TypeError):
             block = self._replanned(tick)
         block.times[block.count] = tick.measurement.time
@@ -176,26 +176,26 @@ class Recorder:
         found, phase, block = signature(tick), tick.reference.phase, self._block
         if block is not None and found == self._signature and phase == block.phase and block.count < len(block.times):
             return block
-        plan = self._plans.get(found)
-        if plan is None:
-            plan = self._plans[found] = self._plan(tick)
+        layout = self._layouts.get(found)
+        if layout is None:
+            layout = self._layouts[found] = self._layout(tick)
         self._signature = found
-        return self._new_block(plan, phase)
+        return self._new_block(layout, phase)
 
     def _replanned(self, tick: Tick) -> Block:
         """A block for a tick in which a diagnostic has another shape than before, with its row filled."""
         assert self._signature is not None
-        plan = self._plans[self._signature] = self._plan(tick)
-        block = self._new_block(plan, tick.reference.phase)
+        layout = self._layouts[self._signature] = self._layout(tick)
+        block = self._new_block(layout, tick.reference.phase)
         try:
-            plan.fill(tick, block)
+            layout.fill(tick, block)
         except (ValueError, TypeError) as error:
             raise ShapeError(f"a tick cannot be recorded: {error}") from error
         return block
 
-    def _new_block(self, plan: RowLayout, phase: str) -> Block:
+    def _new_block(self, layout: RowLayout, phase: str) -> Block:
         self._send()
-        self._block = Block(plan, phase, _BLOCK)
+        self._block = Block(layout, phase, _BLOCK)
         return self._block
 
     def _send(self) -> None:
@@ -203,10 +203,10 @@ class Recorder:
             self._queue.put(self._block)
         self._block = None
 
-    def _plan(self, tick: Tick) -> RowLayout:
-        plan = RowLayout.of(tick, self.info, self._channels)
-        self._units.update(units_of(plan.topics))
-        return plan
+    def _layout(self, tick: Tick) -> RowLayout:
+        layout = RowLayout.of(tick, self.info, self._channels)
+        self._units.update(units_of(layout.topics))
+        return layout
 
     # ------------------------------------------------------------------ beside the loop
 
@@ -229,7 +229,7 @@ class Recorder:
             self._phase = block.phase
             self._file.add_text(f"{PREFIX}/reference/phase", int(times[0]), block.phase)
         columns = block.columns()
-        self._file.add_block(block.plan.topics, times, columns)
+        self._file.add_block(block.layout.topics, times, columns)
         if self._scene is not None:
             self._scene.add(times, columns)
 

@@ -38,7 +38,7 @@ class Offer:
     """springs that keep the joints off their limits; None: without"""
     channels: tuple[Channel, ...] = ()
     """units of what the source reports"""
-    deaf: str = ""
+    no_force_signal: str = ""
     """remedy if a force is asked for without a force signal; empty: there is a force signal"""
     duration: float | None = None
     """s that the task takes; None: it goes on"""
@@ -74,10 +74,10 @@ def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offe
     core: Controller[Any] = entry.build(model, parameters, believed.period)
     needs, filtered = core.needs, entry.needs(parameters)
     felt = offer.sensing.felt or needs.wrench or filtered.wrench
-    if offer.deaf and (needs.wrench or filtered.wrench):
+    if offer.no_force_signal and (needs.wrench or filtered.wrench):
         raise ConfigError(
             f"controller {entry.name!r} needs the contact wrench at frame {believed.presses or believed.frames[0]!r},"
-            f" and there is no force signal: {offer.deaf}, or use a controller that needs none"
+            f" and there is no force signal: {offer.no_force_signal}, or use a controller that needs none"
             " (`pliant list controllers`)"
         )
     controller = with_joint_limits(core, robot, offer.joint_limits)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from pliant.entries import ControllerConfig
-from pliant.environment import Environment, FeltSurface
+from pliant.environment import Environment, EstimatedSurface
 from pliant.experiments.base import CaseConfig
 from pliant.live.page.task_error import TaskError
 from pliant.simulation import Imperfections, Scene
@@ -198,7 +198,7 @@ class Picture:
     """of the first frame, while it presses"""
     environments: Mapping[str, Environment] = field(default_factory=dict[str, Environment])
     """frame → estimated stiffness and damping of the contact, where they are estimated"""
-    surfaces: Mapping[str, FeltSurface] = field(default_factory=dict[str, FeltSurface])
+    surfaces: Mapping[str, EstimatedSurface] = field(default_factory=dict[str, EstimatedSurface])
     """frame → estimated orientation of the surface it touched, where that is estimated"""
 
 

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import viser
 
-from pliant.environment import Environment, FeltSurface
+from pliant.environment import Environment, EstimatedSurface
 from pliant.live.link.messages import Picture
 
 _EVERY = 0.3  # s between two updates, because a browser lays out the page again after each
@@ -42,7 +42,7 @@ def environment_line(frame: str, felt: Environment) -> str:
     return f"estimated at **{frame}**: stiffness {stiffness}, damping {damping}"
 
 
-def surface_line(frame: str, felt: FeltSurface) -> str:
+def surface_line(frame: str, felt: EstimatedSurface) -> str:
     """Estimated rotation of the surface that a frame touches, away from the believed one."""
     turn, std = math.degrees(float(np.linalg.norm(felt.turn))), math.degrees(felt.normal_std)
     return f"estimated at **{frame}**: surface tilted by {_number(turn, std, '°')}"

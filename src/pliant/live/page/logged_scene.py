@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from pliant.environment import Environment, FeltSurface
+from pliant.environment import Environment, EstimatedSurface
 from pliant.errors import OutputError
 from pliant.experiments.drawn import drawn_log
 from pliant.live.link.messages import Picture
@@ -108,14 +108,14 @@ class LoggedScene:
                 found[frame] = place, wrench[:3]
         return found
 
-    def _estimated_surfaces(self, at: float) -> dict[str, FeltSurface]:
-        found: dict[str, FeltSurface] = {}
+    def _estimated_surfaces(self, at: float) -> dict[str, EstimatedSurface]:
+        found: dict[str, EstimatedSurface] = {}
         for frame in self._surfaces:
             pivot, turn, normal, std = (
-                self._value(f"estimate/{frame}/surface/{part.name}", at) for part in fields(FeltSurface)
+                self._value(f"estimate/{frame}/surface/{part.name}", at) for part in fields(EstimatedSurface)
             )
             if pivot is not None and turn is not None and normal is not None and std is not None:
-                found[frame] = FeltSurface(pivot, turn, normal, float(np.squeeze(std)))
+                found[frame] = EstimatedSurface(pivot, turn, normal, float(np.squeeze(std)))
         return found
 
     def _environments(self, at: float) -> dict[str, Environment]:

@@ -42,7 +42,7 @@ def build(config: HapticCaseConfig) -> Experiment:
         sensing=sensing_of(config.estimation, joint_memory=0.0),
         torque_step=config.torque_step,
         joint_limits=config.joint_limits,
-        deaf="" if config.sensor or not config.pressing else "set sensor=true, or ask for no force",
+        no_force_signal="" if config.sensor or not config.pressing else "set sensor=true, or ask for no force",
         channels=(Channel(f"planner/{config.frame}/clamped", "m"),),
         warnings=warnings,
     )

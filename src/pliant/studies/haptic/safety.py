@@ -14,7 +14,7 @@ from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
 from pliant.studies.haptic.config import FAMILY, HapticCaseConfig
 from pliant.studies.haptic.scene import FOOT_RADIUS, touching_height
-from pliant.studies.haptic.script import Wish, wishes
+from pliant.studies.haptic.script import UserSettings, user_settings
 
 _SAFE_GAIN = 0.5
 """k_I over the actuators' bandwidth in rad/s: no limit cycle, neither on a rigid floor nor on a soft ball"""
@@ -26,10 +26,10 @@ def warnings_of(config: HapticCaseConfig, robot: Robot) -> tuple[str, ...]:
     found += _gains(config, robot)
     found += _exploration_gain(config)
     workspace = workspace_of(robot, config.frame)
-    for time, wish in wishes(config, config.exploration):
+    for time, settings in user_settings(config, config.exploration):
         found += [
             f"t = {time:g} s: {text}"
-            for text in [*_force_bounds(wish), *_distance(wish, workspace), *_offsets(wish, config)]
+            for text in [*_force_bounds(settings), *_distance(settings, workspace), *_offsets(settings, config)]
         ]
     return tuple(dict.fromkeys(found))
 
@@ -40,9 +40,9 @@ def _gains(config: HapticCaseConfig, robot: Robot) -> list[str]:
     q = robot.home if config.start is None else np.array(config.start)
     inertia = _inertia(robot, config.frame, q)
     tunings: list[ImpedanceTuning] = []
-    for _, wish in wishes(config, config.exploration):
-        if all(wish.tuning is not known for known in tunings):
-            tunings.append(wish.tuning)
+    for _, settings in user_settings(config, config.exploration):
+        if all(settings.tuning is not known for known in tunings):
+            tunings.append(settings.tuning)
     found: list[str] = []
     for tuning in tunings:
         found += sentences(
@@ -76,10 +76,10 @@ def _exploration_gain(config: HapticCaseConfig) -> list[str]:
     ]
 
 
-def _force_bounds(wish: Wish) -> list[str]:
+def _force_bounds(settings: UserSettings) -> list[str]:
     """Forces beyond F_max: the exploration clamps them and reports the rest."""
     found: list[str] = []
-    for axis, force, bound in zip("xyz", wish.force, wish.tuning.force_max, strict=True):
+    for axis, force, bound in zip("xyz", settings.force, settings.tuning.force_max, strict=True):
         if abs(force) > bound:
             found.append(
                 f"{force:g} N along {axis} exceed F_max = {bound:g} N and are clamped to it; safe: |F_d| ≤ {bound:g} N"
@@ -87,26 +87,26 @@ def _force_bounds(wish: Wish) -> list[str]:
     return found
 
 
-def _distance(wish: Wish, workspace: Workspace) -> list[str]:
-    target = np.array(wish.target)
+def _distance(settings: UserSettings, workspace: Workspace) -> list[str]:
+    target = np.array(settings.target)
     nearest = workspace.nearest(target)
     if nearest is target:
         return []
     return [
-        f"the target {list(wish.target)} m lies {1e3 * np.linalg.norm(target - nearest):.0f} mm out of reach and is"
+        f"the target {list(settings.target)} m lies {1e3 * np.linalg.norm(target - nearest):.0f} mm out of reach and is"
         f" brought back; safe: {np.round(nearest, 4).tolist()} m"
     ]
 
 
-def _offsets(wish: Wish, config: HapticCaseConfig) -> list[str]:
+def _offsets(settings: UserSettings, config: HapticCaseConfig) -> list[str]:
     """Forces along z that the bound x_b of the offset does not allow on what lies below the target."""
-    below = _surface_below(wish.target, config)
-    F_d, F_max = wish.force[2], float(wish.tuning.force_max[2])
+    below = _surface_below(settings.target, config)
+    F_d, F_max = settings.force[2], float(settings.tuning.force_max[2])
     if below is None or config.random or not 0.0 < F_d <= F_max:
         return []
     depth, K_e = below
-    K_0, x_b = float(wish.tuning.stiffness[2]), float(wish.tuning.range[2])
-    most = reachable_force(depth, K_e, profile_along(2, wish.tuning, config), x_b)
+    K_0, x_b = float(settings.tuning.stiffness[2]), float(settings.tuning.range[2])
+    most = reachable_force(depth, K_e, profile_along(2, settings.tuning, config), x_b)
     if most >= F_d or K_0 == 0.0:
         return []
     enough = F_d * (K_e + K_0) / (K_e * K_0) - depth

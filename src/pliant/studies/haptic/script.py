@@ -14,7 +14,7 @@ from pliant.studies.haptic.steps_config import Step
 
 
 @dataclass(frozen=True)
-class Wish:
+class UserSettings:
     """Everything that the user has set at one moment."""
 
     target: tuple[float, float, float]
@@ -25,15 +25,17 @@ class Wish:
     exploration: ExplorationConfig
     name: str = ""
 
-    def after(self, step: Step) -> Wish:
-        """The wishes once a step was made. A value that is itself impossible is refused by its own type."""
+    def after(self, step: Step) -> UserSettings:
+        """The settings after a step. An impossible value is refused by its own type."""
         given = {axis: getattr(step, axis) for axis in ("stiffness", "force_max", "range")}
         changed = {axis: np.array(value) for axis, value in given.items() if value is not None}
         tuning = replace(self.tuning, **changed) if changed else self.tuning
         exploration = self.exploration
         if step.reset is not None and step.reset != exploration.reset:
             exploration = exploration.model_copy(update={"reset": step.reset})
-        return Wish(step.target or self.target, step.force or self.force, tuning, exploration, step.name or self.name)
+        return UserSettings(
+            step.target or self.target, step.force or self.force, tuning, exploration, step.name or self.name
+        )
 
     def reference(self, frame: str) -> Reference:
         """The same as a reference for one frame."""
@@ -42,18 +44,18 @@ class Wish:
         return Reference(0.0, (task,), phase=self.name, tuning=self.exploration)
 
 
-def wishes(config: HapticCaseConfig, exploration: ExplorationConfig) -> list[tuple[float, Wish]]:
-    """The user's wishes from each step on, with the time in s."""
+def user_settings(config: HapticCaseConfig, exploration: ExplorationConfig) -> list[tuple[float, UserSettings]]:
+    """The user's settings from each step on, with the time in s."""
     first = config.steps[0]
     assert first.target is not None
-    wish = Wish(first.target, (0.0, 0.0, 0.0), config.impedance.tuning(), exploration)
-    found: list[tuple[float, Wish]] = []
+    settings = UserSettings(first.target, (0.0, 0.0, 0.0), config.impedance.tuning(), exploration)
+    found: list[tuple[float, UserSettings]] = []
     for step in config.steps:
-        wish = wish.after(step)
-        found.append((step.time, wish))
+        settings = settings.after(step)
+        found.append((step.time, settings))
     return found
 
 
 def schedule(config: HapticCaseConfig, exploration: ExplorationConfig) -> Schedule:
     """The references that the planner starts from."""
-    return Schedule([(time, wish.reference(config.frame)) for time, wish in wishes(config, exploration)])
+    return Schedule([(time, settings.reference(config.frame)) for time, settings in user_settings(config, exploration)])

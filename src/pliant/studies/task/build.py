@@ -10,7 +10,7 @@ from pliant.estimation import SurfaceFitConfig
 from pliant.experiments.model_error import with_mass_error
 from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import ReferenceSource
-from pliant.references.felt_surface import CHANNELS, OnFeltSurface
+from pliant.references.estimated_surface import CHANNELS, OnEstimatedSurface
 from pliant.references.surface_task import SurfaceTask, SurfaceTaskSettings, surface_task
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
@@ -26,7 +26,7 @@ from pliant.telemetry.schema import Channel
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
-_FELT = tuple(Channel(name, unit) for name, unit in CHANNELS.items())
+_SURFACE_CHANNELS = tuple(Channel(name, unit) for name, unit in CHANNELS.items())
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def build(case: TaskCase) -> Experiment:
         sensing=sensing_of(
             case.estimation, velocity_gain=case.velocity_share, surface=surface_fit(case), load=known_load(case)
         ),
-        channels=_FELT if case.force.along == "estimated" else (),
+        channels=_SURFACE_CHANNELS if case.force.along == "estimated" else (),
         torque_step=case.torque_step,
         joint_limits=case.joint_limits,
         duration=made.references.longest,
@@ -104,4 +104,4 @@ def surface_fit(case: TaskCase) -> SurfaceFitConfig | None:
 
 
 def _source(case: TaskCase, source: ReferenceSource[Any]) -> ReferenceSource[Any]:
-    return source if case.force.along == "believed" else OnFeltSurface(source, case.tool.frame)
+    return source if case.force.along == "believed" else OnEstimatedSurface(source, case.tool.frame)

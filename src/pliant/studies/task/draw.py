@@ -19,7 +19,7 @@ from pliant.studies.task.measure import TaskSignals
 from pliant.surfaces.unroll import unrolled
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import Curve, Panel, save, time_series
-from pliant.telemetry.plots.path import coloured_way
+from pliant.telemetry.plots.path import coloured_path
 from pliant.telemetry.plots.pictures import picture_row
 from pliant.telemetry.plots.rows import dots
 
@@ -83,7 +83,7 @@ def _map(case: TaskCase, signals: TaskSignals) -> Figure:
     """Force error as colour along the way on the surface, which is laid flat."""
     on = np.flatnonzero(signals.following)[::_EVERY]
     error = signals.force[on] - signals.wanted[on]
-    return coloured_way(unrolled(signals.place[on], signals.normal[on]), error, "force error, N", _title(case))
+    return coloured_path(unrolled(signals.place[on], signals.normal[on]), error, "force error, N", _title(case))
 
 
 def _title(case: TaskCase) -> str:

@@ -116,7 +116,7 @@ def _draw_wall(ax: Axes, wall: float) -> None:
     ax.axvline(wall, color=style.MUTED, linewidth=1.2)
 
 
-def coloured_way(place: Array, value: Array, label: str, title: str = "") -> Figure:
+def coloured_path(place: Array, value: Array, label: str, title: str = "") -> Figure:
     """A path on a flat surface, to scale, with a signed value as colour: white is zero.
 
     Args:

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pliant.environment import FeltSurface
+from pliant.environment import EstimatedSurface
 from pliant.errors import ConfigError
-from pliant.references.felt_surface import OnFeltSurface, turned
+from pliant.references.estimated_surface import OnEstimatedSurface, turned
 from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array, exp3
 from pliant.surfaces import PlaneSurface, SphereSurface, SurfaceGeometry
@@ -81,12 +81,12 @@ class Still:
 def felt_at(time: float, turn: Array | None) -> Estimate:
     if turn is None:
         return Estimate(time, ZERO, ZERO, ZERO, ZERO)
-    felt = FeltSurface(np.array([0.5, 0.0, 0.1]), turn, np.array([0.0, 0.0, 1.0]), 0.1)
+    felt = EstimatedSurface(np.array([0.5, 0.0, 0.1]), turn, np.array([0.0, 0.0, 1.0]), 0.1)
     return Estimate(time, ZERO, ZERO, ZERO, ZERO, surfaces={"tool": felt})
 
 
 def test_the_turn_is_continuous_and_arrives() -> None:
-    source, turn = OnFeltSurface(Still(), "tool", memory=0.1), np.array([0.05, -0.03, 0.0])
+    source, turn = OnEstimatedSurface(Still(), "tool", memory=0.1), np.array([0.05, -0.03, 0.0])
     state = source.init(felt_at(0.0, None))
     reference, state = source.step(felt_at(0.0, None), state)
     before = reference.tasks[0]
@@ -103,4 +103,4 @@ def test_the_turn_is_continuous_and_arrives() -> None:
 
 def test_a_time_constant_must_be_above_zero() -> None:
     with pytest.raises(ConfigError, match="time constant"):
-        OnFeltSurface(Still(), "tool", memory=0.0)
+        OnEstimatedSurface(Still(), "tool", memory=0.0)

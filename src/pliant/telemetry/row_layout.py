@@ -48,8 +48,8 @@ class RowLayout:
         """Copies a tick into a block's next row.
 
         Raises:
-            ValueError, TypeError: an array has another size than the plan's, or holds something else than numbers; the
-                row is then undefined.
+            ValueError, TypeError: an array has another size than in the layout, or holds no numbers; the row is then
+                undefined.
         """
         plain_end, arrays_end, _ = self.ends
         row = block.rows[block.count]
@@ -78,15 +78,15 @@ def _is_plain(group: ChannelGroup, tick: Tick) -> bool:
 
 
 class Block:
-    """Preallocated rows for ticks of one plan and one phase."""
+    """Preallocated rows for ticks of one layout and one phase."""
 
-    def __init__(self, plan: RowLayout, phase: str, size: int) -> None:
-        self.plan, self.phase = plan, phase
+    def __init__(self, layout: RowLayout, phase: str, size: int) -> None:
+        self.layout, self.phase = layout, phase
         self.times = np.empty(size)
-        self.rows = np.empty((size, plan.ends[-1]))
+        self.rows = np.empty((size, layout.ends[-1]))
         self.view = self.rows.data.cast("B")
         """the bytes of the rows"""
-        self.stride = 8 * plan.ends[-1]
+        self.stride = 8 * layout.ends[-1]
         """bytes per row"""
         self.count = 0
 
@@ -94,7 +94,7 @@ class Block:
         """Channel as logged → (count, …) values."""
         found: dict[str, Array] = {}
         at = 0
-        for channel in self.plan.channels:
+        for channel in self.layout.channels:
             values = self.rows[: self.count, at : at + channel.size].reshape(-1, *channel.shape)
             at += channel.size
             (stored,) = logged([channel])

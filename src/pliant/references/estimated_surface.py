@@ -22,7 +22,7 @@ _MEMORY = 0.2  # s
 
 
 @dataclass(frozen=True, slots=True)
-class FeltSurfaceState:
+class EstimatedSurfaceState:
     """State between two ticks."""
 
     inner: Any
@@ -31,7 +31,7 @@ class FeltSurfaceState:
     """(3,) rad, by which references are turned about the pivot"""
 
 
-class OnFeltSurface(ReferenceSource[FeltSurfaceState]):
+class OnEstimatedSurface(ReferenceSource[EstimatedSurfaceState]):
     """Turns the references of a task about the point of first contact by the estimated rotation of the surface
     (`Estimate.surfaces`): path, tool, direction of the force and task axes, now and over the horizon.
 
@@ -52,10 +52,10 @@ class OnFeltSurface(ReferenceSource[FeltSurfaceState]):
             raise ConfigError(f"the time constant of an estimated surface must be above zero (s), got {memory}")
         self.inner, self.frame, self.memory = inner, frame, memory
 
-    def init(self, estimate: Estimate) -> FeltSurfaceState:
-        return FeltSurfaceState(self.inner.init(estimate), estimate.time, np.zeros(3))
+    def init(self, estimate: Estimate) -> EstimatedSurfaceState:
+        return EstimatedSurfaceState(self.inner.init(estimate), estimate.time, np.zeros(3))
 
-    def step(self, estimate: Estimate, state: FeltSurfaceState) -> tuple[Reference, FeltSurfaceState]:
+    def step(self, estimate: Estimate, state: EstimatedSurfaceState) -> tuple[Reference, EstimatedSurfaceState]:
         reference, inner = self.inner.step(estimate, state.inner)
         felt, turn = estimate.surfaces.get(self.frame), state.turn
         if felt is not None:
@@ -63,7 +63,7 @@ class OnFeltSurface(ReferenceSource[FeltSurfaceState]):
             turn = turn + share * (felt.turn - turn)
             reference = turned(reference, exp3(turn), felt.pivot, self.frame)
         reference = changed(reference, diagnostics={**reference.diagnostics, "surface/turn": turn})
-        return reference, FeltSurfaceState(inner, estimate.time, turn)
+        return reference, EstimatedSurfaceState(inner, estimate.time, turn)
 
 
 def turned(reference: Reference, R: Array, pivot: Array, frame: str) -> Reference:
