@@ -112,6 +112,28 @@ def test_show_config_prints_every_value_and_runs_nothing(tmp_path: Path, monkeyp
     assert not list(tmp_path.iterdir())
 
 
+def test_set_takes_lists_and_empties_lists_and_options() -> None:
+    def shown(*sets: str) -> dict[str, list[str]]:
+        arguments = [part for text in sets for part in ("--set", text)]
+        result = CLI.invoke(app, ["run", "haptic", "--show-config", *arguments])
+        assert result.exit_code == 0, result.output
+        return {line.split()[0]: line.split()[1:] for line in result.stdout.splitlines()}
+
+    usual = shown()
+    assert usual["checks"][0] != "[]"  # baseline: there is something to empty
+    assert usual["torque_step"][0] not in ("null", "0.2")
+    assert (usual["checks"][-1], usual["torque_step"][-1]) != ("--set", "--set")
+    emptied = shown("checks=[]", "torque_step=none")
+    assert emptied["checks"] == ["[]", "--set"]
+    assert (emptied["torque_step"][0], emptied["torque_step"][-1]) == ("null", "--set")
+    given = shown("steps=[{target = [0, 0, 0.25]}, {time = 1.5, target = [0, 0, 0.3]}]")
+    assert "0.25]," in given["steps"]
+    assert given["steps"][-1] == "--set"
+    refused = CLI.invoke(app, ["run", "haptic", "--show-config", "--set", "steps=[{target = [0, 0]}]"])
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert "steps.0.target.2" in refused.stderr
+
+
 @pytest.mark.study
 def test_ctrl_c_keeps_what_was_recorded(tmp_path: Path) -> None:
     command = [*PLIANT, "run", "--set", "duration=150", "--set", "path.kind=hold", "--out", "out"]
