@@ -165,7 +165,7 @@ BAD_INPUT = [
     (["run", "--robot", "broken.urdf"], "is not XML"),
     (["run", "--robot", "leg3"], "has no frame"),
     (["run", "--set", "duration"], "key=value"),
-    (["run", "--set", "duration=-1"], "greater than 0"),
+    (["run", "--set", "duration=-1"], "must be above 0"),
     (["run", "--set", "duration=nan"], "finite number"),
     (["run", "--set", "lenght=2"], "unknown key 'lenght'"),
     (["run", "--set", "period=0.0007"], "whole multiple"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -11,9 +10,10 @@ from typing import Any, TypeVar, cast
 
 from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
 
-from pliant.errors import ConfigError, OutputError, options
+from pliant.errors import ConfigError, OutputError
 from pliant.files import read_file
-from pliant.overlay import models_in, overlaid
+from pliant.overlay import overlaid
+from pliant.validation_text import shown, validation_sentence
 
 MOST = 1e12
 """largest absolute value in a configuration, in any unit; beyond it sums and products overflow or lose their meaning"""
@@ -49,7 +49,7 @@ def _numbers(value: Any) -> Iterator[float]:
 
 
 C = TypeVar("C", bound=BaseModel)
-_MOST_DEPTH, _MOST_SHOWN, _MOST_BYTES = 32, 200, 1e6
+_MOST_DEPTH, _MOST_BYTES = 32, 1e6
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -88,9 +88,9 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
         key, equals, value = text.partition("=")
         parts = _parts(key)
         if not equals or not all(parts):
-            raise ConfigError(f"an override is written key=value, for example plant.period=0.001, got {_shown(text)}")
+            raise ConfigError(f"an override is written key=value, for example plant.period=0.001, got {shown(text)}")
         if len(parts) > _MOST_DEPTH:
-            raise ConfigError(f"override {_shown(text)} is nested more than {_MOST_DEPTH} tables deep")
+            raise ConfigError(f"override {shown(text)} is nested more than {_MOST_DEPTH} tables deep")
         node = tree
         for part in parts[:-1]:
             node = node.setdefault(part, {})
@@ -125,7 +125,16 @@ def validated(kind: type[C], values: Mapping[str, Any]) -> C:
     try:
         return kind.model_validate(dict(values))
     except ValidationError as error:
-        raise ConfigError(_sentence(kind, error)) from None
+        raise ConfigError(validation_sentence(kind, error, values)) from None
+
+
+def refuse_unknown_keys(kind: type[BaseModel], changes: Mapping[str, Any]) -> None:
+    """Raises ConfigError, with the valid ones, for a key that a configuration does not have; values are not judged."""
+    try:
+        kind.model_validate(dict(changes))
+    except ValidationError as error:
+        if any(one["type"] == "extra_forbidden" for one in error.errors()):
+            raise ConfigError(validation_sentence(kind, error, changes, "extra_forbidden")) from None
 
 
 def _toml_value(text: str) -> Any:
@@ -134,11 +143,11 @@ def _toml_value(text: str) -> Any:
     except tomllib.TOMLDecodeError:
         return None if text.lower() in ("none", "null") else text
     except (RecursionError, ValueError) as error:  # ValueError: a number with more digits than Python reads
-        raise ConfigError(f"a value cannot be read: {_shown(text)} ({error})") from None
+        raise ConfigError(f"a value cannot be read: {shown(text)} ({error})") from None
     if len(read) > 1:  # a line break and more assignments
         return text
     if _is_deep(read):
-        raise ConfigError(f"a value is nested more than {_MOST_DEPTH} tables deep: {_shown(text)}")
+        raise ConfigError(f"a value is nested more than {_MOST_DEPTH} tables deep: {shown(text)}")
     return read["value"]
 
 
@@ -156,36 +165,3 @@ def _is_deep(values: Any) -> bool:
                 below += cast("list[Any]", value)
         level = below
     return False
-
-
-def _shown(value: Any) -> str:
-    """A value for a message, shortened if it is long."""
-    try:
-        text = repr(value)
-    except ValueError:  # a number with more digits than Python writes
-        return f"a number with more than {sys.get_int_max_str_digits()} digits"
-    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
-
-
-def _sentence(kind: type[BaseModel], error: ValidationError) -> str:
-    found = error.errors()
-    # where one of several types is allowed, each gives an error: a broken rule is the most useful one
-    first = next((one for one in found if one["type"] == "value_error"), found[0])
-    where = ".".join(str(part) for part in first["loc"])
-    got = first.get("input")
-    if first["type"] == "extra_forbidden":
-        return f"unknown key {_shown(where)}; {options(_keys_beside(kind, first['loc']), str(first['loc'][-1]))}"
-    return f"{where or kind.__name__}: {first['msg'].removeprefix('Value error, ')}, got {_shown(got)}"
-
-
-def _keys_beside(kind: type[BaseModel], location: Sequence[int | str]) -> list[str]:
-    fields = kind.model_fields
-    for part in location[:-1]:
-        field = fields.get(str(part))
-        if field is None:
-            continue  # a discriminator or a list index
-        nested = models_in(field.annotation)
-        if not nested:
-            return []
-        fields = nested[0].model_fields
-    return list(fields)

@@ -31,7 +31,8 @@ def overlaid(kind: type[BaseModel] | None, base: Any, changes: Mapping[str, Any]
         nested = isinstance(value, Mapping) and isinstance(result.get(key), Mapping) and not _is_numbers(annotation)
         models = [] if _is_table(annotation) else models_in(annotation)
         nested = nested and len(models) < 2
-        if isinstance(value, Mapping) and _named(result.get(key)):
+        empty = bool(models) and result.get(key) in ((), [])
+        if isinstance(value, Mapping) and (empty or _named(result.get(key))):
             result[key] = _by_name(models[0] if models else None, key, result[key], value)
             continue
         result[key] = overlaid(models[0] if models else None, result[key], value) if nested else value
@@ -55,7 +56,8 @@ def _by_name(
             result.append(value)
             continue
         if name not in names:
-            raise ConfigError(f"{key} has nothing called {name!r}; {options(names, name)}")
+            there = options(names, name) if names else f"there is no [[{key}]] at all"
+            raise ConfigError(f"{key} has nothing called {name!r}; {there}")
         place = names.index(name)
         result[place] = overlaid(kind, result[place], value) if isinstance(value, Mapping) else value
     return result

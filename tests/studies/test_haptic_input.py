@@ -31,12 +31,12 @@ def changed(**changes: Any) -> HapticCaseConfig:
 @pytest.mark.parametrize(
     ("changes", "rule"),
     [
-        ({"impedance": {"stiffness": (-1.0, 6000.0, 12000.0)}}, "greater than or equal to 0"),
+        ({"impedance": {"stiffness": (-1.0, 6000.0, 12000.0)}}, "must be at least 0"),
         ({"impedance": {"stiffness": (float("nan"), 6000.0, 12000.0)}}, "finite"),
         ({"impedance": {"force_max": (float("inf"), 150.0, 300.0)}}, "finite"),
         ({"impedance": {"stiffness": (0.0, 6000.0, 12000.0)}}, "stiffness 0 needs force_max 0"),
         ({"impedance": {"range": (0.0, 0.025, 0.025)}}, "range"),
-        ({"exploration": {"gain": -45.0}}, "greater than 0"),
+        ({"exploration": {"gain": -45.0}}, "must be above 0"),
         ({"exploration": {"gian": 45.0}}, "did you mean 'gain'"),
         ({"steps": ({"time": 0.5, "target": (0.1, 0.0, 0.0)},)}, "first step must be at time 0"),
         ({"steps": ({"target": (0.1, 0.0, 0.0)}, {"time": 0.0})}, "times of the steps must increase"),

@@ -88,7 +88,7 @@ def test_masses_that_are_scaled_are_known(tmp_path: Path) -> None:
         ('"phase.down.settle" = { uniform = [1, 2] }', r"the task has no 'phase.down'; valid: 'press'"),
         ('"phase.press.wrench.4" = { uniform = [1, 2] }', r"is no number of the task; valid: '1', '2', '3'"),
         ('"scene.floor.damping" = { of = "scene.floor.stiffness" }', r"follows 'scene.floor.stiffness', which is not"),
-        ('"scene.floor.friction" = { uniform = [-2, -1] }', r"friction.*greater than or equal to 0"),
+        ('"scene.floor.friction" = { uniform = [-2, -1] }', r"friction.*must be at least 0"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path: Path, more: str, message: str) -> None:

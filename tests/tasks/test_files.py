@@ -69,14 +69,14 @@ def test_one_phase_of_a_list_is_changed_by_its_name(tmp_path: Path) -> None:
     [
         ("[path]\nspede = 1.0\n", r"task\.toml: unknown key 'path\.spede'.*did you mean 'speed'"),
         ('[path]\npattern = "zigzag"\n', r"path\.pattern.*'raster', 'spiral'.*got 'zigzag'"),
-        ("[path]\nspeed = -1.0\n", r"path\.speed.*greater than or equal to 0.*got -1"),
+        ("[path]\nspeed = -1.0\n", r"path\.speed.*must be at least 0.*got -1"),
         ("[force]\nnormal = -5.0\n", r"a force on a surface pushes"),
         ("[force]\nnormal = [[0.0, 5], [0.0, 9]]\n", r"must increase"),
         ("[truth]\nshift = { uniform = [1.0, -1.0] }\n", r"low to high"),
         ('[path]\npattern = "file"\n', r"path\.file and path\.pattern = 'file' go together"),
         ('base = "task.toml"\n', r"inherit from each other in a circle"),
         ("variant = 3\n", r"write \[variant\.NAME\]"),
-        ("format = 2\n", r"format.*less than or equal to 1"),
+        ("format = 2\n", r"written for a newer pliant .format 2., this one reads up to 1"),
     ],
 )
 def test_bad_input_is_one_sentence_with_file_and_key(tmp_path: Path, text: str, message: str) -> None:

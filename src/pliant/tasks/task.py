@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from pliant.configuration import Config
 from pliant.errors import options
@@ -115,6 +115,15 @@ class TaskParts(Config):
     control: dict[str, dict[str, Any]] = Field(
         default={}, description="controller → changes to its parameters, e.g. [control.haptic]"
     )
+
+    @field_validator("format", mode="before")
+    @classmethod
+    def _can_be_read(cls, value: Any) -> Any:
+        if isinstance(value, int) and value > FORMAT:
+            raise ValueError(
+                f"written for a newer pliant (format {value}), this one reads up to {FORMAT}: update pliant"
+            )
+        return value
 
     @model_validator(mode="after")
     def _is_of_one_kind(self) -> TaskParts:
