@@ -46,8 +46,9 @@ def test_one_and_two_processes_leave_the_same_logs(study: str, tmp_path: Path) -
 
 
 def test_the_regression_command_runs_every_case_of_every_study() -> None:
-    covered = {(study, case) for study, case, _, _ in regression.rows()}
     studies = [get_study(name) for name in study_names()]
     ours = [study for study in studies if type(study).__module__.startswith("pliant.")]  # other tests bring their own
+    names = {study.name for study in ours}
+    covered = {(study, case) for study, case, _, _ in regression.rows() if study in names}  # there are tasks, too
     assert covered == {(study.name, case) for study in ours for case in study.cases}
     assert len(ours) == 3

@@ -98,6 +98,7 @@ def test_a_small_window_shows_scene_and_controls(shown: Live, width: int, height
             assert tab.evaluate(_COVERED) == 0
             shown.shoot("any_task_900x600_open")
             tab.add_style_tag(content=".mantine-Notifications-root { z-index: 400 !important }")
+            say(shown, "a third message as long as a usual one, with a reason and what would help")
             assert tab.evaluate(_COVERED) > 0, "the control: above the panels a message covers some"
     finally:
         tab.set_viewport_size({"width": 1280, "height": 800})
