@@ -185,7 +185,7 @@ def test_every_row_says_of_how_many_runs_it_is() -> None:
     assert "| c | x | a | 3.00 ± 2.6 | – | – | N | mean of 3 |  |" in text
     assert "| c | x | peak | 6.00 | – | – | N | worst of 3 |  |" in text
     assert "- c, x: 2 of 5 runs failed (≤ 81 %): fell (and 1 more)" in text
-    assert "- d, x: no run failed, 0 of 140: ≤ 2.1 %" in text
+    assert "- d, x: no run failed in 140; with 95 % confidence fewer than 2.1 % would" in text
     assert "one-sided 95 % Clopper–Pearson bound" in text
 
 

@@ -80,8 +80,8 @@ def _run(
     scheduler: str | None,
 ) -> None:
     study, rest = get_study(request.study), unsettled(asked, before)
-    if rest:
-        check_buildable(request.study, rest[0])
+    for first in {config.controller: config for config in reversed(rest)}.values():  # one run of each controller
+        check_buildable(request.study, first)
     store = ResultStore(folder, request, asked)
     store.add_before(before)
     whole = False

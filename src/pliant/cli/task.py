@@ -10,7 +10,9 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from pliant.configuration import read_toml
 from pliant.errors import ConfigError, options
+from pliant.robots import CATALOGUE
 from pliant.tasks.task import Task
 from pliant.telemetry.output import output_folder, write_text
 
@@ -49,10 +51,20 @@ _SAMPLE = "x,y\n-60,-20\n60,-20\n60,20\n-60,20\n"
 
 
 def new_task_command(console: Console, pattern: str, out: Path | None, robot: str) -> None:
-    """Writes a task file as a template. Raises ConfigError for an unknown pattern or a file that already exists."""
+    """Writes a task file as a template. A file that does not end in .toml gets that ending.
+
+    Raises:
+        ConfigError: an unknown pattern or robot, or a file that exists already.
+    """
     if pattern not in _SIZES:
         raise ConfigError(f"there is no pattern {pattern!r}; {options(_SIZES, pattern)}")
+    if robot not in CATALOGUE and not Path(robot).expanduser().is_file():
+        raise ConfigError(
+            f"there is no robot {robot!r}; {options(CATALOGUE, robot)} or the path of a URDF or MJCF file"
+        )
     file = out or Path(f"{pattern}.toml")
+    if file.suffix != ".toml":
+        file = file.with_name(f"{file.name}.toml")
     parts = _SIZES[pattern]
     lines = zip(parts[::2], parts[1::2], strict=True)
     size = "".join(f"{line:48s}# {note}\n" if note else f"{line}\n" for line, note in lines)
@@ -106,6 +118,9 @@ def check_command(
     study, config = asked.study, asked.config
     if not isinstance(study, TaskStudy) or not isinstance(config, TaskCase):
         raise ConfigError(f"{target} is a study; `pliant task check` checks a task file")
+    if target.endswith(".toml") and not read_toml(Path(target)):
+        _say(console, f"note     {target} says nothing: robot, path, force and controller are all defaults")
+    study.refuse_unknown(config)
     found = study.check(config)
     table = Table("world", "what", "least or most", "bound", "where", "kept")
     for row in found.rows():
@@ -125,6 +140,7 @@ def check_command(
             raise RunFailedError(f"{told}; {found.help}")
         _say(console, f'{told}; the task says check = "off"')
         return
+    study.build(config)  # refuses what a run refuses beside the reach
     drawn = len(found.surfaces) - 1
     _say(
         console,

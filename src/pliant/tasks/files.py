@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -56,6 +57,11 @@ def read_task(path: str | Path) -> TaskFile:
     variants = values.pop("variant", {})
     if not isinstance(variants, dict) or not all(isinstance(changes, dict) for changes in variants.values()):
         raise ConfigError(f"{file}: variant: write [variant.NAME] with changes below it, got {variants!r}")
+    for name in variants:
+        if not name.strip() or re.search(r"[/\\\x00-\x1f]|\.\.", name):
+            raise ConfigError(
+                f"{file}: variant: its name becomes that of a folder: no '/', backslash or '..', got {name!r}"
+            )
     return TaskFile(file, checked(file, values), variants)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rich.table import Table
 from rich.text import Text
 
-from pliant.telemetry.proportion import bound_text, share_text
+from pliant.telemetry.proportion import bound_text
 from pliant.telemetry.summary import CaseSummary, Metric, Summary
 
 MET, MISSED = "✓", "✗"
@@ -98,7 +98,9 @@ def failed_text(case: CaseSummary) -> str:
     run that did."""
     count = len(case.failures)
     if not count:
-        return f"no run failed, {share_text(0, case.runs)}" if case.runs > 1 else ""
+        if case.runs <= 1:
+            return ""
+        return f"no run failed in {case.runs}; with 95 % confidence fewer than {bound_text(0, case.runs)} would"
     more = f" (and {count - 1} more)" if count > 1 else ""
     bound = f" (≤ {bound_text(count, case.runs)})" if case.runs > 1 else ""
     return f"{count} of {case.runs} runs failed{bound}: {case.failures[0]}{more}"

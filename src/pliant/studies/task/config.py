@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
-from pliant.configuration import merged
+from pliant.configuration import merged, refuse_unknown_keys
 from pliant.controllers.step_limit import DEFAULT_SHARE, TorqueStep
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
+from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.base_config import Dial
 from pliant.mpc.config import MpcConfig
@@ -67,10 +69,10 @@ class TaskCase(TaskParts, CaseConfig):
 
     def controller_parameters(self, robot: Robot, believed: Believed) -> ControllerConfig:
         """The controller's parameters: its defaults, weights tuned for a late or a prompt loop, what suits the task,
-        then `control`. Raises ConfigError: `control` names a controller that there is not."""
-        for name in self.control:
-            if ":" not in name:  # one of a file is looked for when it is chosen
-                find_controller(name)
+        then `control`. Raises ConfigError: `control` names a controller, or a key of one, that there is not."""
+        for name, changes in self.control.items():
+            if ":" not in name and name != self.controller:  # one of a file is looked for when it is chosen
+                _refuse_unknown(name, changes)
         entry = self.entry
         late = self.timing.sensing_delay + self.timing.computation_delay > 0.0
         preset = self.preset or ("tuned" if late else "perfect")
@@ -80,6 +82,15 @@ class TaskCase(TaskParts, CaseConfig):
             known = {name: base.phases[like].model_dump() for name, like in as_in.items() if like in base.phases}
             base = merged(base, {"phases": known} if known else {})
         return parameters_for(entry, robot, believed, self.control.get(self.controller, {}), base)
+
+
+def _refuse_unknown(name: str, changes: Mapping[str, Any]) -> None:
+    """Raises ConfigError for a controller that there is not, or parameters that it does not have."""
+    entry = find_controller(name)
+    try:
+        refuse_unknown_keys(type(entry.default), changes)
+    except ConfigError as error:
+        raise ConfigError(f"control.{name}: {error}") from None
 
 
 def case_of(task: Task, name: str) -> TaskCase:

@@ -24,7 +24,7 @@ class ListStudy(TaskStudy):
     """Runs of one task of `[[phase]]`."""
 
     def build(self, config: TaskCase) -> Experiment:
-        check_accept_of_list(config)
+        self.check_accept(config)
         return build_list(as_drawn(config))
 
     def metrics(self, config: TaskCase, log: Log) -> tuple[Metric, ...]:
@@ -43,6 +43,9 @@ class ListStudy(TaskStudy):
         run = as_drawn(config)
         told = [told_landing(run, name, one) for name, one in listed(run).landings.items()]
         return {"landing": "; ".join(told)} if told else {}
+
+    def check_accept(self, config: TaskCase) -> None:
+        check_accept_of_list(config)
 
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         return checked_list(config, drawn)

@@ -25,6 +25,7 @@ from pliant.studies.task.true_scene import true_scene
 from pliant.surfaces import EdgeSurface, HoleSurface
 from pliant.tasks.phase import Condition, PerAxis
 from pliant.tasks.phase import Thing as Described
+from pliant.wiring.registry import find_controller
 
 _DRAWN = 4.0  # radii of a hole, half of the face that is drawn round it
 _CHANGES = ("target", "wrench", "stiffness", "force_max", "range", "reset")
@@ -137,10 +138,12 @@ def _change(case: TaskCase, index: int, change: Mapping[str, Any], time: float) 
     for key, value in change.items():
         parts = key.split(".")
         name = parts[-1]
-        if len(parts) == 3 and parts[0] == "controller" and parts[1] != case.controller:
-            continue  # of another controller than the one that runs
-        if name not in _CHANGES or len(parts) not in (1, 3):
+        named = len(parts) == 3 and parts[0] == "controller"
+        if name not in _CHANGES or not (named or len(parts) == 1):
             raise ConfigError(f"event {index}: nothing online is called {key!r}; {options(_CHANGES, name)}")
+        if named and parts[1] != case.controller:
+            _require_controller(index, key, parts[1])
+            continue  # of another controller than the one that runs
         if name in _WHOLE:
             if not isinstance(value, bool):
                 raise ConfigError(f"event {index}: {key} is true or false, got {value!r}")
@@ -155,6 +158,13 @@ def _change(case: TaskCase, index: int, change: Mapping[str, Any], time: float) 
         else:
             tuning[name] = per_axis(numbers if len(numbers) == 3 else float(numbers[0]))  # type: ignore[arg-type]
     return StageChange(time, target, wrench, tuning, whole)
+
+
+def _require_controller(index: int, key: str, name: str) -> None:
+    try:
+        find_controller(name)
+    except ConfigError as error:
+        raise ConfigError(f"event {index}: {key!r}: {error}") from None
 
 
 def _numbers(index: int, key: str, value: Any, sizes: tuple[int, ...]) -> Array:

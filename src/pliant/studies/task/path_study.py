@@ -27,7 +27,7 @@ class PathStudy(TaskStudy):
     worst = WORST
 
     def build(self, config: TaskCase) -> Experiment:
-        check_accept(config.accept)
+        self.check_accept(config)
         return build(as_drawn(config))
 
     def metrics(self, config: TaskCase, log: Log) -> tuple[Metric, ...]:
@@ -46,6 +46,9 @@ class PathStudy(TaskStudy):
     def about(self, config: TaskCase) -> Mapping[str, str]:
         described = config.surface.geometry(Pose()).described
         return {"part": described} if described else {}
+
+    def check_accept(self, config: TaskCase) -> None:
+        check_accept(config.accept)
 
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         return checked_path(config, drawn)

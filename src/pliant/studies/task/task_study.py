@@ -8,16 +8,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from pliant.configuration import merged
-from pliant.dotted import nested
+from pliant.dotted import flat, nested
 from pliant.errors import ConfigError
 from pliant.experiments.base import Study
-from pliant.experiments.case import Case, Row, seeded
+from pliant.experiments.case import Case, Row, once, row_runs, seeded
 from pliant.experiments.parameter_search import ParameterSearch
 from pliant.overlay import overlaid
 from pliant.references.reach.check import ReachCheck
 from pliant.studies.task.check import CHECKED_DRAWS
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.search import Searched, search_of
+from pliant.wiring.registry import find_controller
 
 _SEEDS = 3
 
@@ -39,8 +40,7 @@ class TaskStudy(Study[TaskCase]):
         """Every combination of the values of `[sweep]`."""
         sweep = {key: values for key, values in base.sweep.items() if key != "seeds"}
         for key, values in sweep.items():
-            if not isinstance(values, list | tuple):
-                raise ConfigError(f"sweep.{key}: a list of values, got {values!r}")
+            _refuse_no_list(key, values)
         rows: list[Row] = []
         for values in itertools.product(*sweep.values()):
             changes: dict[str, Any] = {}
@@ -68,6 +68,17 @@ class TaskStudy(Study[TaskCase]):
         """What → what is to be known of it before a run, in a sentence each."""
         return {}
 
+    def refuse_unknown(self, config: TaskCase) -> None:
+        """Raises ConfigError for names that a run or a row of `[sweep]` would refuse: of controllers, metrics, keys."""
+        for row in self.rows(config):
+            for run in row_runs(config, row, once, None):
+                find_controller(run.controller)
+                self.check_accept(run)
+
+    @abstractmethod
+    def check_accept(self, config: TaskCase) -> None:
+        """Raises ConfigError for a metric of `accept` that there is not."""
+
     @abstractmethod
     def check(self, config: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         """Reach, limits, freedom, torque and speed along the whole task. Args: drawn: how many drawn worlds.
@@ -75,6 +86,17 @@ class TaskStudy(Study[TaskCase]):
         Raises:
             PliantError: a robot, frame or path that there is not.
         """
+
+
+def _refuse_no_list(key: str, values: Any) -> None:
+    """Raises ConfigError unless there are values to sweep over."""
+    if isinstance(values, Mapping) and values:
+        inner = next(iter(flat({key: values})))
+        raise ConfigError(f'sweep.{key} is a table: write "{inner}" in quotes, "{inner}" = [ … ]')
+    if not isinstance(values, list | tuple):
+        raise ConfigError(f"sweep.{key}: a list of values, got {values!r}")
+    if not values:
+        raise ConfigError(f"sweep.{key} is an empty list: give it a value, or leave the key out")
 
 
 def _of_a_value(key: str, value: Any) -> tuple[str, dict[str, Any]]:
