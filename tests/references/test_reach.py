@@ -189,6 +189,11 @@ def test_too_much_force_and_too_much_speed_have_their_own_remedies() -> None:
     heavy = check_reach(ROBOT, "tool", on_plane(0.55, force=700.0), posture=PLAIN, nominal=ROBOT.home)
     assert "torque of joint" in heavy.surfaces[0].failure
     assert heavy.help.startswith("press with")
+    lighter = float(heavy.help.split("at most ")[1].split(" N")[0])
+    assert quick(on_plane(0.55, force=lighter)).reachable
+    assert not quick(on_plane(0.55, force=1.1 * lighter)).reachable
+    huge = check_reach(ROBOT, "tool", on_plane(0.55, force=1e6), posture=PLAIN, nominal=ROBOT.home)
+    assert huge.help.split("at most ")[1] == heavy.help.split("at most ")[1]
     fast = check_reach(ROBOT, "tool", on_plane(0.55), bounds=ReachBounds(speed=0.02), posture=PLAIN)
     assert "joint speed of joint" in fast.surfaces[0].failure
     assert "times slower" in fast.help

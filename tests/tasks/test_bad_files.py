@@ -12,6 +12,7 @@ from pliant.cli.app import app
 CLI = CliRunner()
 FILE = '[path]\npattern = "file"\nfile = "path.csv"\n'
 LIST = 'robot = "leg3"\ncontroller = "haptic"\nmoves = "foot"\n'
+BALL = '[surface]\nshape = "sphere"\nradius = 0.05\npose = { xyz = [0.5, 0.0, 0.1] }\n'
 BOX = '[scene.box]\nshape = "box"\n'
 PHASE = '[[phase]]\nname = "one"\ntarget = [0.1, 0.0, 0.1]\nduration = 0.5\n'
 
@@ -27,7 +28,27 @@ PHASE = '[[phase]]\nname = "one"\ntarget = [0.1, 0.0, 0.1]\nduration = 0.5\n'
         (FILE, "x,y\n0,0\n0.1,far\n", "line 3: column 'y' must be a finite number, got 'far'"),
         ("[surface]\npose = { xyz = [2.0, 0.0, 0.0] }\n", "", "cannot reach"),
         ("[force]\nnormal = 50\n[limits]\nforce = 40\n", "", "force.normal asks for 50 N, and limits.force allows 40"),
-        (FILE + "[limits]\nforce = 8\n", "x,y,force\n0,0,5\n0.05,0,9\n", "path.file asks for 9 N"),
+        (
+            FILE + "[limits]\nforce = 8\n",
+            "x,y,force\n0,0,5\n0.05,0,9\n",
+            "path.csv, line 3, column 'force' asks for 9 N, and limits.force allows 8",
+        ),
+        (
+            FILE + "[limits]\nspeed = 0.1\n",
+            "x,y,speed\n0,0,0.05\n0.05,0,0.2\n",
+            "path.csv, line 3, column 'speed' asks for 0.2 m/s, and limits.speed allows 0.1",
+        ),
+        (
+            FILE + "[limits]\nspeed = 0.1\n",
+            "x,y,time\n0,0,0\n0.05,0,1\n0.1,0,1.1\n",
+            "path.csv, line 4, column 'time' asks for 0.5 m/s, and limits.speed allows 0.1",
+        ),
+        (FILE, "x,y,force\n0,0,5\n0.05,0,-5\n", "path.csv, line 3: column 'force' must not be negative, got -5"),
+        (FILE, "x,y,speed\n0,0,-0.1\n0.05,0,0.1\n", "path.csv, line 2: column 'speed' must not be negative, got -0.1"),
+        (FILE, "x,y\n0,0\n0,0\n", "path.csv, lines 2 to 3: all points are the same"),
+        ('[path]\npattern = "line"\nsize = [0.0, 0.0]\n', "", "path.size = [0, 0] is no line"),
+        (FILE + BALL, "x,y\n0,0\n0.05,0\n0.2,0\n", "path.csv, line 4: the path runs round the surface"),
+        (FILE + BALL, "x,y\n0,0\n0.31,0\n", "path.csv, line 3: the path runs round the surface"),
         (LIST + BOX + BOX + PHASE, "", "scene"),
         (LIST + PHASE + PHASE, "", "phases need different names"),
         (FILE, "x,y,x\n0,0,0\n", "column 'x' stands there twice"),
@@ -46,6 +67,8 @@ def test_a_task_that_cannot_be_is_one_sentence(
     assert sentence in said
     assert "Traceback" not in said
     assert len(said.split(". ")) <= 2, said
+    checked = CLI.invoke(app, ["task", "check", "task.toml"])
+    assert checked.exit_code != 0, "the check calls possible what a run refuses"
 
 
 @pytest.mark.parametrize("name", ["task.toml", "path.csv"])

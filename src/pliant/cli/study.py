@@ -36,6 +36,8 @@ def study_command(
         RunFailedError: every run failed.
     """
     asked = asked_runs(request)
+    if not request.controllers:
+        _notes(complain, request, asked)
     folder = output_folder(out or study_folder(request.study))
     with locked(folder):
         _run(console, complain, request, asked, [], folder, jobs, scheduler)
@@ -54,6 +56,13 @@ def resume_command(
         raise ConfigError(f"--resume needs the folder of a study that was begun, got {folder}, which is not a folder")
     with locked(output_folder(folder)):
         _resume(console, complain, folder, study, jobs, scheduler)
+
+
+def _notes(complain: Console, request: Request, asked: Sequence[CaseConfig]) -> None:
+    study, first = get_study(request.study), {config.case: config for config in reversed(asked)}
+    for config in reversed(first.values()):
+        if note := study.note(config):
+            complain.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
 
 
 def _resume(

@@ -114,6 +114,10 @@ class Study(ABC, Generic[C]):
                 made |= figure(case, found)
         return [save(figure, folder / f"{name}.png") for name, figure in made.items()]
 
+    def note(self, config: C) -> str:
+        """What a full study of a case does that its user may not expect, in a sentence; empty: nothing."""
+        return ""
+
     def search(self, controller: str, case: str | None = None) -> ParameterSearch:
         """How the parameters of a controller are searched, on the robot and with the delays of a case (None: the
         study's default). Raises ConfigError if the study has no search."""

@@ -75,6 +75,7 @@ def check_reach(
     posture: PostureOptions | None = None,
     nominal: Array | None = None,
     solved: PosturePath | None = None,
+    subject: str = "surface and path",
 ) -> ReachCheck:
     """Whether a robot can do a task.
 
@@ -89,6 +90,7 @@ def check_reach(
             chosen here.
         nominal: (n,) rad, as of the task.
         solved: the joint path along `course`, where the task brings its own; None: it is solved here.
+        subject: what the user would have to move, for the remedy.
 
     Returns:
         "Reachable" is a statement on the sampled course with the joint path found, from rest over its first place; how
@@ -108,7 +110,9 @@ def check_reach(
         near = replace(options, restarts=0)
         found.append(_check(robot, frame, other, f"drawn {number}", limits, begin, near)[1])
     failed = next((check for check in found if not check.reachable), None)
-    words = "" if failed is None else remedy(robot, frame, course, failed.margins, limits, options.spins, nominal)
+    if failed is None:
+        return ReachCheck(course, tuple(found), path)
+    words = remedy(robot, frame, course, failed.margins, limits, options.spins, nominal, subject)
     return ReachCheck(course, tuple(found), path, words)
 
 

@@ -88,6 +88,14 @@ def _csv(file: Path, text: str, length: float) -> PathPoints:
         late = np.flatnonzero(np.diff(table["time"]) <= 0.0)
         if late.size:
             raise ConfigError(f"{file}, line {lines[int(late[0]) + 1]}: time must increase from row to row")
+    for name in ("force", "speed"):
+        low = np.flatnonzero(table[name] < 0.0) if name in table else np.empty(0, dtype=np.intp)
+        if low.size:
+            why = "a force on a surface pushes" if name == "force" else "the order of the rows is the direction"
+            raise ConfigError(
+                f"{file}, line {lines[int(low[0])]}: column {name!r} must not be negative, got"
+                f" {table[name][low[0]]:g}: {why}"
+            )
     z = table.get("z")
     points = np.column_stack([table["x"], table["y"], np.zeros(len(lines)) if z is None else z])
     return PathPoints(points, z is None, tuple(lines), table.get("time"), table.get("speed"), table.get("force"))

@@ -12,8 +12,10 @@ from pliant.references.toolpaths.corners import rounded
 from pliant.references.toolpaths.orientation import task_rotations, tool_rotations
 from pliant.references.toolpaths.pace import pace
 from pliant.references.toolpaths.patterns import STEP
+from pliant.references.toolpaths.rows import PathRows
 from pliant.references.trajectories.rotation import QuaternionSpline
 from pliant.references.trajectories.spline import Spline
+from pliant.references.trajectories.waypoints import Waypoints
 from pliant.spatial import Array, quaternion, unit_rows
 from pliant.surfaces import SurfaceGeometry
 
@@ -64,8 +66,10 @@ class Toolpath:
     """R_world_task: third axis along the normal"""
     share: Spline
     """(1,) completed share of the path length, 0…1"""
-    force: Spline | None = None
+    force: Waypoints | None = None
     """(1,) N along the normal, where the file has a column for it"""
+    rows: PathRows | None = None
+    """of the file that it comes from; None: a pattern"""
 
     @property
     def duration(self) -> float:
@@ -128,7 +132,8 @@ def through(
     if force is None:
         return path
     shares = [float(path.share.at(time).value[0]) for time in path.times.tolist()]
-    return replace(path, force=Spline(path.times, np.interp(shares, given, force)[:, None]))
+    lines = Waypoints(path.times, np.interp(shares, given, force)[:, None], "ramp")  # a spline would swing below zero
+    return replace(path, force=lines)
 
 
 def resting(place: Array, normal: Array, time: float, motion: PathMotion, heading: Array) -> Toolpath:

@@ -16,6 +16,7 @@ from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
 from pliant.simulation.seeding import generator
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.file_path import slowed
 from pliant.studies.task.geometry import force_of, laid_out
 from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
 from pliant.studies.task.sensor import known_load
@@ -62,10 +63,12 @@ def _planned(text: str) -> Planned:
 
 
 def refuse_path(case: TaskCase, path: Toolpath) -> None:
-    """Raises ConfigError where the task asks for more than its limits allow."""
-    force = case.force.largest if path.force is None else float(max(path.force.at(t).value[0] for t in path.times))
-    speeds = (("path.speed", case.path.speed), ("phases.approach_speed", case.phases.approach_speed))
-    refuse_beyond(case.limits, [("force.normal" if path.force is None else "path.file", force)], speeds)
+    """Raises ConfigError where the task asks for more than its limits allow. Rows of a file were refused when the path
+    was laid out."""
+    speeds = [("phases.approach_speed", case.phases.approach_speed)]
+    if path.rows is None or not path.rows.paced_by:
+        speeds.insert(0, ("path.speed", case.path.speed))
+    refuse_beyond(case.limits, [("force.normal", case.force.largest)] if path.force is None else [], speeds)
     refuse_outside(case.limits, "path", path.places + case.tool.tool().reach * path.normals)
 
 
@@ -92,6 +95,7 @@ def build(case: TaskCase) -> Experiment:
         joint_limits=case.joint_limits,
         duration=made.references.longest,
         limits=run_limits(case.limits, case.tool.frame),
+        warnings=slowed(case, made.path),
     )
     return wired(case.entry, case.controller_parameters(robot, believed), offer)
 

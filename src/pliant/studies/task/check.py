@@ -62,6 +62,7 @@ def checked_list(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         [partial(_course, one) for one in runs],
         nominal=made.start,
         solved=None if made.tracked is None else made.tracked.path,
+        subject="the targets, and what they touch," if made.tracked is None else "the tracks",
     )
 
 

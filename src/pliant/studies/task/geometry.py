@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from pathlib import Path as FilePath
 
 import numpy as np
 
@@ -12,13 +11,13 @@ from pliant.errors import ConfigError
 from pliant.experiments.model_error import with_masses
 from pliant.references.postures.inverse_kinematics import Target, joint_box
 from pliant.references.postures.posture import freedom, mink_solver
-from pliant.references.toolpaths.files import read_path
 from pliant.references.toolpaths.patterns import PATTERNS
 from pliant.references.toolpaths.pressing import PressingForce
-from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, resting, through
+from pliant.references.toolpaths.toolpath import PathMotion, Toolpath, on_chart, resting
 from pliant.robot import Robot
 from pliant.robots.chain import arm_of
 from pliant.spatial import Array, exp3, unit
+from pliant.studies.task.file_path import path_from_file
 from pliant.surfaces import SurfaceGeometry
 from pliant.tasks.parts import PathConfig, Pose
 from pliant.tasks.task import TaskParts
@@ -28,7 +27,6 @@ _HEIGHT = (0.07, 0.28, 0.5)  # of that reach, over the base
 _NEARER = ((0.2, 0.3, 0.4, 0.5), (-0.15, 0.0, 0.07, 0.28))  # the same for an arm that is short beside its tool
 _AROUND = (-0.05, 0.0, 0.05)  # m, before and behind a place, where the tool must do as well
 _LONGEST = 200.0  # m of a pattern
-_MILLIMETRES = 5.0  # m; a path as long as that was written in another unit
 
 
 def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
@@ -152,7 +150,7 @@ def toolpath_of(task: TaskParts, surface: SurfaceGeometry, robot: Robot) -> Tool
         _check_length(path)
         uv = PATTERNS[path.pattern](path.size, path.spacing, path.turns)
         return on_chart(surface, near.point, along, uv, motion, heading)
-    return _from_file(task, surface, near.point, (along, across, near.normal), motion, heading)
+    return path_from_file(task, surface, near.point, (along, across, near.normal), motion, heading)
 
 
 def force_of(task: TaskParts) -> PressingForce:
@@ -161,42 +159,13 @@ def force_of(task: TaskParts) -> PressingForce:
     return PressingForce(knots, values, task.force.unit)
 
 
-def _from_file(
-    task: TaskParts,
-    surface: SurfaceGeometry,
-    origin: Array,
-    axes: tuple[Array, Array, Array],
-    motion: PathMotion,
-    heading: Array,
-) -> Toolpath:
-    """A file's path. Its axes are u and v on the surface and the normal at the origin."""
-    path = task.path
-    assert path.file is not None
-    file = FilePath(path.file)
-    found = read_path(file, path.unit)
-    size = float(np.ptp(found.points, axis=0).max())
-    if size > _MILLIMETRES:
-        raise ConfigError(f"path file {file} is {size:.4g} m long: is it in millimetres? then set path.unit = 'mm'")
-    world = origin + found.points @ np.stack(axes)
-    if found.flat:
-        world, _ = surface.chart(origin, axes[0], found.points[:, :2])
-    for point, line in zip(world, found.lines, strict=True):
-        off = abs(surface.near(point).distance)
-        if off > path.off_surface:
-            raise ConfigError(
-                f"path file {file}, line {line}: the point is {1e3 * off:.1f} mm off the believed surface, more than"
-                f" path.off_surface = {1e3 * path.off_surface:g} mm: mend the file, path.at or surface.pose"
-            )
-    speed = found.speed
-    if speed is None and found.time is not None:
-        way = np.linalg.norm(np.diff(world, axis=0), axis=1) / np.diff(found.time)
-        speed = np.maximum(np.concatenate([way[:1], way]), 1e-3)
-    return through(surface, world, speed, found.force, motion, heading)
-
-
 def _check_length(path: PathConfig) -> None:
-    """Raises ConfigError for a pattern that nobody waits for."""
+    """Raises ConfigError for a pattern without length, or one that nobody waits for."""
     wide, high = path.size
+    if path.pattern == "line" and wide == high == 0.0:
+        raise ConfigError(
+            "path.size = [0, 0] is no line: give it a length, or say path.pattern = 'hold' for a tool that stays"
+        )
     filled = abs(wide * high) / path.spacing if path.pattern in ("raster", "spiral") else 0.0
     length = filled + 4.0 * (abs(wide) + abs(high)) * path.turns
     if not length <= _LONGEST:

@@ -12,6 +12,8 @@ from pliant.studies.task.build import build, planned
 from pliant.studies.task.check import CHECKED_DRAWS, checked_path
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.drawn_case import as_drawn
+from pliant.studies.task.file_path import pace_of_file
+from pliant.studies.task.geometry import laid_out
 from pliant.studies.task.measure import WORST, TaskSignals, check_accept, measured, signals_of
 from pliant.studies.task.search import Searched
 from pliant.studies.task.task_study import TaskStudy
@@ -45,7 +47,12 @@ class PathStudy(TaskStudy):
 
     def about(self, config: TaskCase) -> Mapping[str, str]:
         described = config.surface.geometry(Pose()).described
-        return {"part": described} if described else {}
+        told = {"part": described} if described else {}
+        if config.path.file is not None:
+            run = as_drawn(config)
+            pace = pace_of_file(run, laid_out(run, run.robot)[2])
+            told |= {"pace": pace} if pace else {}
+        return told
 
     def check_accept(self, config: TaskCase) -> None:
         check_accept(config.accept)

@@ -53,6 +53,11 @@ class TaskStudy(Study[TaskCase]):
             rows.append(Row(", ".join(named), controller, changes))
         return rows
 
+    def note(self, config: TaskCase) -> str:
+        if config.sweep.keys() - {"seeds"}:
+            return ""
+        return f"{config.case} has no [sweep] of keys: it is run as it is, once for each seed"
+
     def shows(self, config: TaskCase) -> bool:
         return config.seed == 0
 
