@@ -131,7 +131,7 @@ def test_set_takes_lists_and_empties_lists_and_options() -> None:
     assert given["steps"][-1] == "--set"
     refused = CLI.invoke(app, ["run", "haptic", "--show-config", "--set", "steps=[{target = [0, 0]}]"])
     assert (refused.exit_code, refused.stdout) == (2, "")
-    assert "steps.0.target.2" in refused.stderr
+    assert "steps.1.target: entry 3 is missing" in refused.stderr
 
 
 @pytest.mark.study
