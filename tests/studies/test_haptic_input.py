@@ -125,8 +125,9 @@ def test_draws_depend_on_the_seed_alone() -> None:
     assert times == sorted(times)
 
 
-@pytest.mark.parametrize("shape", list(Shape))
+@pytest.mark.parametrize("shape", [shape for shape in Shape if "printed" not in shape.value])
 def test_reachable_force_is_where_surface_and_profile_are_equal(shape: Shape) -> None:
+    """Not of profiles as printed: they jump, past the force at which they would meet the surface."""
     soft, hard, bound = 1e3, 1e6, 0.025
     leg = profile_of(12e3, 300.0, bound, shape=shape)
     assert reachable_force(0.01, soft, leg, bound) == pytest.approx(32.3, abs=0.01)  # two springs in series

@@ -18,6 +18,7 @@ from pliant.studies.stack import STUDY as STACK
 from pliant.studies.stack.build import build
 from pliant.studies.stack.config import StackPath as ToolPath
 from pliant.studies.stack.placement import motion, placed
+from pliant.studies.task.listed import robot_of_list
 
 FRAMES = ("flange", "elbow")
 SHORT = 0.4  # s
@@ -103,11 +104,11 @@ def test_locked_joints_are_replaced_as_a_whole_or_emptied() -> None:
     assert nested.wall is not None
     assert nested.wall.stiffness == 1e4  # the rest of a table stays
     with pytest.raises(PliantError, match=r"no joint 'A7' to lock.*locked=\{\} locks none"):
-        merged(config, {"robot": "panda", "locked": {"A7": 0.0}}).robot_model()
+        robot_of_list(merged(config, {"robot": "panda", "locked": {"A7": 0.0}}).as_task())
 
 
 @pytest.mark.parametrize(("robot", "joints"), [("iiwa14", 6), ("iiwa7", 7), ("panda", 7), ("lwr4", 7), ("ur5e", 6)])
 def test_only_the_robot_of_the_paper_has_a_joint_locked(robot: str, joints: int) -> None:
     config = merged(POLISHING.case("ideal"), {"robot": robot})
-    assert config.robot_model().n == joints
-    assert merged(config, {"locked": {}}).robot_model().n >= joints
+    assert robot_of_list(config.as_task()).n == joints
+    assert robot_of_list(merged(config, {"locked": {}}).as_task()).n >= joints
