@@ -22,7 +22,7 @@ _RULES = {
     "too_long": "must have at most {max_length} {entries}",
     "string_too_short": "must be at least {min_length} long",
     "string_too_long": "must be at most {max_length} long",
-    "finite_number": "must be finite",
+    "finite_number": "must be a finite number",
     "int_from_float": "must be a whole number",
 }
 _KINDS = {
