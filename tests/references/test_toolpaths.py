@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, OutputError, PliantError
@@ -106,6 +106,7 @@ def test_any_pattern_on_any_surface(
 ) -> None:
     """On the surface, at its speed within 2 % away from starts, stops and bends, continuous in pose and normal."""
     motion = PathMotion(speed=speed, acceleration=0.5, tilt=tilt, lift=0.015)
+    assume(abs(surface.normal(surface.top())[0]) < 0.999)  # X across the surface is refused as the first axis
     path = laid(surface, PATTERNS[pattern]((size, 0.7 * size), 0.25 * size, 1.0), motion)
     h = 2e-3
     rng = np.random.default_rng(0)
