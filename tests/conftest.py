@@ -12,12 +12,21 @@ settings.register_profile(
     "pliant", deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow], derandomize=True
 )
 settings.load_profile("pliant")
+_APART = 8  # files from one that drives a browser to the next
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files with studies come first: they take longest, and so the processes end at about the same time."""
+    """Files with studies come first: they take longest, and so the processes end at about the same time.
+
+    Those that drive a browser lie apart: each needs the whole machine, and they wait for each other.
+    """
     studies = {item.path for item in items if item.get_closest_marker("study")}
-    items.sort(key=lambda item: item.path not in studies)
+    browsers = {item.path for item in items if "browser" in getattr(item, "fixturenames", ())}
+    files = sorted(dict.fromkeys(item.path for item in items), key=lambda path: path not in studies)
+    order = [path for path in files if path not in browsers]
+    for number, path in enumerate(path for path in files if path in browsers):
+        order.insert(_APART * number, path)
+    items.sort(key=lambda item: order.index(item.path))
 
 
 @pytest.fixture(scope="session")

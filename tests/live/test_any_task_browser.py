@@ -23,6 +23,10 @@ _COVERED = """() => [...document.querySelectorAll('button, input, [role=slider],
     return top && top.closest('.mantine-Notifications-root') && !part.closest('.mantine-Notifications-root');
 }).length"""
 """how many controls a message lies upon"""
+_IN_FRONT = """.mantine-Notifications-root {
+    z-index: 999999 !important; inset: 0 !important; width: 100vw !important; max-width: none !important
+}
+.mantine-Notification-root { height: 100vh !important }"""
 
 
 @pytest.fixture(scope="module")
@@ -97,9 +101,9 @@ def test_a_small_window_shows_scene_and_controls(shown: Live, width: int, height
             say(shown, "another message as long as a usual one, with a reason and what would help")
             assert tab.evaluate(_COVERED) == 0
             shown.shoot("any_task_900x600_open")
-            tab.add_style_tag(content=".mantine-Notifications-root { z-index: 400 !important }")
+            tab.add_style_tag(content=_IN_FRONT)
             say(shown, "a third message as long as a usual one, with a reason and what would help")
-            assert tab.evaluate(_COVERED) > 0, "the control: above the panels a message covers some"
+            assert tab.evaluate(_COVERED) > 0, "the control: a message in front of everything covers some"
     finally:
         tab.set_viewport_size({"width": 1280, "height": 800})
         tab.reload()
@@ -111,6 +115,8 @@ def test_tool_robot_and_surface_are_chosen_on_the_page(shown: Live) -> None:
     until(lambda: config(shown).tool.shape == "box", "the other tool")
     until(lambda: shown.time > 0.0 and shown.page.run.ticks > 0, "its run")
     shown.shoot("any_task_box")
+    choose(shown, "tool", "sphere")  # a box has no law against a cylinder
+    until(lambda: config(shown).tool.shape == "sphere", "the ball again")
     choose(shown, "surface", "cylinder")
     until(lambda: config(shown).surface.shape == "cylinder", "the other surface")
     until(lambda: shown.latest("contact") > 1.0, "its contact")
