@@ -1,4 +1,4 @@
-"""The page for any task, in windows of three sizes: what is chosen there runs, and nothing covers the controls."""
+"""The page for any task, in windows of three sizes: what is chosen there runs, and scene and controls are seen."""
 
 from __future__ import annotations
 
@@ -9,24 +9,12 @@ import pytest
 from playwright.sync_api import Browser
 
 from pliant.configuration import merged
-from pliant.live.link.messages import Note
 from pliant.live.page.plots import Plot
 from pliant.studies.task.config import TaskCase
 from tests.live.conftest import Live, served, until
 from tests.live.test_task_dials import task
 
 pytestmark = pytest.mark.study
-
-_COVERED = """() => [...document.querySelectorAll('button, input, [role=slider], [role=tab]')].filter(part => {
-    const box = part.getBoundingClientRect();
-    const top = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-    return top && top.closest('.mantine-Notifications-root') && !part.closest('.mantine-Notifications-root');
-}).length"""
-"""how many controls a message lies upon"""
-_IN_FRONT = """.mantine-Notifications-root {
-    z-index: 999999 !important; inset: 0 !important; width: 100vw !important; max-width: none !important
-}
-.mantine-Notification-root { height: 100vh !important }"""
 
 
 @pytest.fixture(scope="module")
@@ -50,12 +38,6 @@ def canvas_width(shown: Live) -> float:
     """px of the scene."""
     box = shown.tab.locator("canvas[data-engine]").bounding_box()
     return 0.0 if box is None else box["width"]
-
-
-def say(shown: Live, text: str) -> None:
-    """Shows a message, and waits for it."""
-    shown.page._note(Note("refused", text))
-    shown.tab.get_by_text(text).first.wait_for()
 
 
 def choose(shown: Live, label: str, option: str) -> None:
@@ -92,18 +74,11 @@ def test_a_small_window_shows_scene_and_controls(shown: Live, width: int, height
         pause = button.bounding_box()
         assert pause is not None
         assert pause["y"] + pause["height"] < height
-        say(shown, "a message as long as a usual one, with a reason and what would help")
-        assert tab.evaluate(_COVERED) == 0
         shown.shoot(f"any_task_{width}x{height}")
         if width == 900:
             tab.get_by_role("button", name="Expand").first.click()
             until(lambda: canvas_width(shown) < 250.0, "the open curves")
-            say(shown, "another message as long as a usual one, with a reason and what would help")
-            assert tab.evaluate(_COVERED) == 0
             shown.shoot("any_task_900x600_open")
-            tab.add_style_tag(content=_IN_FRONT)
-            say(shown, "a third message as long as a usual one, with a reason and what would help")
-            assert tab.evaluate(_COVERED) > 0, "the control: a message in front of everything covers some"
     finally:
         tab.set_viewport_size({"width": 1280, "height": 800})
         tab.reload()
