@@ -208,7 +208,7 @@ class ImpedanceConfig(Config):
     range: PerAxis = quantity(0.025, "m", "x_b: error at which F_max is reached, and bound of the exploration")
 
 
-class Link(Config):
+class TouchingLink(Config):
     """A part of the robot that touches things along its length, beside the moved frame."""
 
     to: str = Field(description="frame at its other end, on the same body")

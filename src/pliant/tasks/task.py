@@ -26,7 +26,7 @@ from pliant.tasks.parts import (
     ToolConfig,
     TruthConfig,
 )
-from pliant.tasks.phase import ImpedanceConfig, Link, Phase, PlannerConfig, Thing
+from pliant.tasks.phase import ImpedanceConfig, Phase, PlannerConfig, Thing, TouchingLink
 from pliant.tasks.surface_config import SurfaceConfig
 
 FORMAT = 1
@@ -62,7 +62,7 @@ class TaskParts(Config):
         default=(), description="an explicit list, in place of surface, path, force and phases"
     )
     scene: dict[str, Thing] = Field(default={}, description="name → thing that stands around, with [[phase]]")
-    links: dict[str, Link] = Field(
+    links: dict[str, TouchingLink] = Field(
         default={}, description="frame → part of the robot from there on that touches things, too, with [[phase]]"
     )
     event: tuple[Event, ...] = Field(default=(), description="online changes, with [[phase]]")
