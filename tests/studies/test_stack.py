@@ -81,9 +81,10 @@ def _without_wall(changes: dict[str, Any]) -> tuple[StackCaseConfig, Log, loop.O
 
 
 def test_without_damping_the_capped_law_comes_to_rest_and_the_spring_does_not() -> None:
-    _, log, _ = run("rest-plain")
+    whole = ("duration", 10.0)  # s, the pushes end at 6 s
+    _, log, _ = run("rest-plain", (whole,))
     speed = np.abs(log["truth/v"][-500:]).max()
-    _, spring, outcome = run("rest-plain", (("controller", "spring"),))
+    _, spring, outcome = run("rest-plain", (whole, ("controller", "spring")))
     assert speed < 0.01
     assert outcome.failure is not None or np.abs(spring["truth/v"][-500:]).max() > 1.0
 

@@ -161,7 +161,11 @@ def test_a_task_is_checked_before_it_runs(tmp_path: Path, monkeypatch: pytest.Mo
     assert "possible as believed and in 10 random worlds" in done.output
     assert list(tmp_path.rglob("wipe_check.png"))
     assert "drawn 1" not in done.output  # of those that are possible, the believed surface alone is printed
-    heavy = CLI.invoke(app, ["task", "check", "wipe", *short, "--set", "force.normal=900"])
+    refused = CLI.invoke(app, ["task", "check", "wipe", *short, "--set", "force.normal=900"])
+    assert refused.exit_code == 2, refused.output
+    assert "lower force.normal or raise limits.force" in refused.output
+    allowed = ["--set", "force.normal=900", "--set", "limits.force=1000"]
+    heavy = CLI.invoke(app, ["task", "check", "wipe", *short, *allowed])
     assert heavy.exit_code == 1, heavy.output
     assert "not possible as believed" in heavy.output
     assert CLI.invoke(app, ["task", "check"]).exit_code == 2
