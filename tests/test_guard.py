@@ -8,48 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pliant import loop
 from pliant.controllers.step_limit import StepLimit
 from pliant.environment import Environment
-from pliant.errors import ConfigError, RunFailedError, ShapeError
+from pliant.errors import RunFailedError, ShapeError
 from pliant.guard import Fault, Guard, Watched
-from pliant.interfaces import Controller, Plant
+from pliant.interfaces import Controller
 from pliant.robot import Robot
-from pliant.signals import Command, Estimate, Measurement, Preview, Reference, TaskReference
-
-PERIOD = 1e-3  # s
-
-
-class Still(Plant[None]):
-    period = PERIOD
-
-    def __init__(self, noisy: frozenset[str] = frozenset()) -> None:
-        self._noisy = noisy
-
-    @property
-    def noisy(self) -> frozenset[str]:
-        return self._noisy
-
-    def init(self) -> tuple[Measurement, None]:
-        return reading(0.0), None
-
-    def step(self, command: Command, world: None) -> tuple[Measurement, None]:
-        return reading(0.0), None
-
-
-def reading(time: float, q: float = 0.1) -> Measurement:
-    return Measurement(time, np.full(3, q), np.zeros(3), np.zeros(3), np.zeros(3), {"foot": np.zeros(6)})
-
-
-def started(noisy: frozenset[str] = frozenset()) -> tuple[Guard, Watched]:
-    guard = Guard(Still(noisy), Robot.load("leg3"))
-    watched = guard.init(reading(0.0))
-    assert guard.measurement(reading(0.0), watched) is Fault.NONE
-    return guard, watched
-
-
-def command(torque: float = 1.0) -> Command:
-    return Command(0.0, np.full(3, torque), np.zeros(3))
+from pliant.signals import Command, Estimate, Preview, Reference, TaskReference
+from tests.guarded_leg import PERIOD, command, reading, started
 
 
 def all_late(guard: Guard, watched: Watched) -> None:
@@ -182,69 +148,6 @@ def test_diagnostics_are_for_the_log_alone() -> None:
     guard, watched = started()
     told = replace(command(), diagnostics={"residual": np.nan})
     assert guard.command(told, watched) == (told, Fault.NONE)
-
-
-def test_what_a_plant_says_of_itself_is_checked() -> None:
-    plant = Still()
-    plant.period = np.nan
-    with pytest.raises(ConfigError, match="period must be finite and above zero, got nan s"):
-        Guard(plant)
-    with pytest.raises(ConfigError, match="noisy sensors must be fields of Measurement, got 'speed'"):
-        Guard(Still(frozenset({"speed"})))
-
-
-@pytest.mark.parametrize(
-    ("part", "answer", "error", "sentence"),
-    [
-        ("plant", None, ConfigError, "the plant must give a Measurement, got NoneType"),
-        (
-            "plant",
-            replace(reading(0.0), v=np.zeros(4)),
-            ShapeError,
-            r"measurement's v must have shape \(3,\)",
-        ),
-        (
-            "plant",
-            replace(reading(0.0), wrenches={"foot": np.zeros(3)}),
-            ShapeError,
-            "wrench at 'foot' must have",
-        ),
-        ("estimator", 3, ConfigError, "the estimator must give Estimate, got int"),
-        ("estimator", Estimate(0.0, *[np.zeros(4)] * 4), ShapeError, r"the first estimate's q must have shape \(3,\)"),
-        ("source", None, ConfigError, "the source must give Reference, got NoneType"),
-        ("controller", None, ConfigError, "the controller must give Command, got NoneType"),
-        (
-            "controller",
-            Command(0.0, np.zeros(2), np.zeros(2)),
-            ShapeError,
-            "command's torque must have shape",
-        ),
-    ],
-)
-def test_parts_that_do_not_fit_are_named_before_anything_is_sent(
-    part: str, answer: Any, error: type[Exception], sentence: str
-) -> None:
-    sound = {"plant": reading(0.0), "estimator": Estimate(0.0, *[np.zeros(3)] * 4), "source": Reference(0.0)}
-    said: dict[str, Any] = {**sound, "controller": command(), part: answer}
-    plant = Still()
-    plant.init = lambda: (said["plant"], None)  # type: ignore[method-assign]
-    plant.step = lambda command, world: pytest.fail("something was sent")  # type: ignore[method-assign]
-    parts = [Says(said[name]) for name in ("estimator", "source", "controller")]
-    with pytest.raises(error, match=sentence):
-        loop.run(plant, *parts, range(3), robot=Robot.load("leg3"))  # type: ignore[arg-type]
-
-
-class Says:
-    """Any part: it gives the same answer at every step."""
-
-    def __init__(self, answer: Any) -> None:
-        self.answer = answer
-
-    def init(self, signal: object) -> None:
-        return None
-
-    def step(self, *signals: object) -> tuple[Any, None]:
-        return self.answer, None
 
 
 class Steady(Controller[None]):

@@ -57,3 +57,16 @@ def noisy(x0: Vector, n: int, rng: np.random.Generator) -> Vector:
     """A measurement: 1e-3 on position and velocity, 0.02 on force or torque."""
     noise = np.concatenate([np.full(2 * n, 1e-3), np.full(len(x0) - 2 * n, 0.02)])
     return x0 + noise * rng.normal(size=len(x0))
+
+
+def nodes_like(solver: _mpc.Solver, robot: TestChain, kind: str, dim: int) -> list[_mpc.Node]:
+    """Single nodes with the solver's parameters."""
+    fields = [name for name in dir(solver.nodes) if not name.startswith("_") and name not in ("count", "copy_node")]
+    nodes = []
+    for k in range(solver.horizon + 1):
+        model = _mpc.Model(kind, dim, baumgarte=(0.0, 10.0))
+        node = _mpc.Node(robot.chain, model, solver.dt, terminal=k == solver.horizon)
+        for name in fields:
+            getattr(node.parameters, name)[0] = getattr(solver.nodes, name)[k]
+        nodes.append(node)
+    return nodes

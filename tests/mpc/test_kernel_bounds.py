@@ -10,8 +10,7 @@ from pliant import _mpc
 from tests.twins.mpc_robots import catalogue_chain
 
 from .drawn_problems import Condensed, tried
-from .kernel_problem import DT, noisy, polishing
-from .test_kernel_solver import nodes_like
+from .kernel_problem import DT, nodes_like, noisy, polishing
 
 Vector = np.ndarray
 
