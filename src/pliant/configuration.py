@@ -8,11 +8,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo, field_validator
 
 from pliant.errors import ConfigError, OutputError
 from pliant.files import read_file
 from pliant.overlay import overlaid
+from pliant.quantity import unit_of
+from pliant.toml_text import toml_sentence
 from pliant.validation_text import shown, validation_sentence
 
 MOST = 1e12
@@ -28,6 +30,16 @@ class Config(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _is_no_truth_value(cls, value: Any, info: ValidationInfo) -> Any:
+        """A quantity is a number: Python would read true as 1."""
+        about = cls.model_fields.get(info.field_name or "")
+        counts = about is not None and unit_of(about) != "" and about.annotation is not bool
+        if counts and not isinstance(value, dict) and any(isinstance(number, bool) for number in _numbers(value)):
+            raise ValueError("must be given in numbers, not as true or false")
+        return value
 
     @field_validator("*")
     @classmethod
@@ -61,8 +73,10 @@ def read_toml(path: Path) -> dict[str, Any]:
     """
     if not path.exists():
         raise ConfigError(f"configuration file {path} does not exist")
+    text = ""
     try:
-        values = tomllib.loads(read_file(path, _MOST_BYTES).decode("utf-8-sig"))
+        text = read_file(path, _MOST_BYTES).decode("utf-8-sig")
+        values = tomllib.loads(text)
     except OutputError as error:
         raise ConfigError(f"configuration file {error}") from None
     except RecursionError:
@@ -70,7 +84,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError:
         raise ConfigError(f"configuration file {path} is not UTF-8 text: save it in that encoding") from None
     except ValueError as error:  # TOML's, or a number with more digits than Python reads
-        raise ConfigError(f"configuration file {path} is not TOML: {error}") from error
+        raise ConfigError(f"configuration file {path} is not TOML: {toml_sentence(text, error)}") from error
     if _is_deep(values):
         raise ConfigError(f"configuration file {path} is nested more than {_MOST_DEPTH} tables deep")
     return values

@@ -65,6 +65,8 @@ def validation_sentence(kind: type[BaseModel], error: ValidationError, values: A
 
 def shown(value: Any, longest: int = _LONGEST_VALUE) -> str:
     """A value for a message, shortened if it is long."""
+    if isinstance(value, bool):
+        return str(value).lower()
     try:
         text = repr(value)
     except ValueError:  # a number with more digits than Python writes

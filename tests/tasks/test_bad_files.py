@@ -26,7 +26,12 @@ PHASE = '[[phase]]\nname = "one"\ntarget = [0.1, 0.0, 0.1]\nduration = 0.5\n'
         (FILE, "x,y,z\n0,0,0\n0.05,0,0\n0.1,0,0.08\n", "line 4: the point is 80.0 mm off the believed surface"),
         (FILE, "x,y\n0,0\n60,0\n60,40\n", "is it in millimetres? then set path.unit = 'mm'"),
         (FILE, "x,y\n0,0\n0.1,far\n", "line 3: column 'y' must be a finite number, got 'far'"),
-        ("[surface]\npose = { xyz = [2.0, 0.0, 0.0] }\n", "", "cannot reach"),
+        (
+            "[surface]\npose = { xyz = [2.0, 0.0, 0.0] }\n",
+            "",
+            "short; move it by surface.pose or path.at: `pliant task check`",
+        ),
+        (FILE, "x,y\n0,0\n0.05,0\n1.2,0\n", "short, on the way to line 4 of path.csv; move it by"),
         ("[force]\nnormal = 50\n[limits]\nforce = 40\n", "", "force.normal asks for 50 N, and limits.force allows 40"),
         (
             FILE + "[limits]\nforce = 8\n",
@@ -52,7 +57,12 @@ PHASE = '[[phase]]\nname = "one"\ntarget = [0.1, 0.0, 0.1]\nduration = 0.5\n'
         (LIST + BOX + BOX + PHASE, "", "scene"),
         (LIST + PHASE + PHASE, "", "phases need different names"),
         (FILE, "x,y,x\n0,0,0\n", "column 'x' stands there twice"),
-        ("[path]\nspeed = 0.1\nspeed = 0.2\n", "", "not TOML: Cannot overwrite a value (at line 3"),
+        (
+            "[path]\nspeed = 0.1\nspeed = 0.2",
+            "",
+            "line 3: key 'path.speed' stands there twice, the first time in line 2",
+        ),
+        ("[force]\nnormal = true\n", "", "force.normal: must be given in numbers, not as true or false"),
     ],
 )
 def test_a_task_that_cannot_be_is_one_sentence(

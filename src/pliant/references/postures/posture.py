@@ -29,11 +29,18 @@ METHODS: dict[str, Callable[[Robot, str], PoseSolver]] = {"mink": mink_solver, "
 
 
 class UnreachableError(PliantError):
-    """A pose that the robot cannot reach, or not in time. Args: time: s of the motion at which that is."""
+    """A pose that the robot cannot reach, or not in time.
 
-    def __init__(self, message: str, time: float = 0.0) -> None:
+    Args:
+        message: what is said.
+        time: s of the motion at which that is.
+        place: (3,) m that is not reached; None: it is not one place.
+    """
+
+    def __init__(self, message: str, time: float = 0.0, place: Array | None = None) -> None:
         super().__init__(message)
         self.time = time
+        self.place = place
 
 
 @dataclass(frozen=True)
@@ -150,7 +157,7 @@ def first_postures(solver: PoseSolver, target: Target, nominal: Array | None, ch
         elif distance + 0.1 * angle < least:
             best, least = q, distance + 0.1 * angle
     if not found:
-        raise UnreachableError(_complaint(solver, best, target, 0.0))
+        raise UnreachableError(_complaint(solver, best, target, 0.0), place=target.position)
     if nominal is not None:
         return sorted(found, key=lambda q: float(np.linalg.norm(q - nominal)))
     return sorted(found, key=lambda q: -freedom(solver, box, q))
@@ -180,7 +187,7 @@ def _follow(
         if short[0] > chosen.tolerance or short[1] > 10.0 * chosen.tolerance:
             hurried = float(np.max(np.abs(q - postures[index - 1]) / speed)) > 0.999 * period
             when = float(times[index])
-            raise UnreachableError(_complaint(solver, q, target, when, hurried), when)
+            raise UnreachableError(_complaint(solver, q, target, when, hurried), when, target.position)
         worst = (max(worst[0], short[0]), max(worst[1], short[1]))
         postures[index] = q
     return PosturePath(times, postures, worst[0], worst[1])

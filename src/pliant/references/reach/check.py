@@ -76,6 +76,7 @@ def check_reach(
     nominal: Array | None = None,
     solved: PosturePath | None = None,
     subject: str = "surface and path",
+    told_of: Callable[[Array], str] = lambda _: "",
 ) -> ReachCheck:
     """Whether a robot can do a task.
 
@@ -91,6 +92,7 @@ def check_reach(
         nominal: (n,) rad, as of the task.
         solved: the joint path along `course`, where the task brings its own; None: it is solved here.
         subject: what the user would have to move, for the remedy.
+        told_of: what is to be said of a place (3,) m that fails, such as the line of a file that it comes from.
 
     Returns:
         "Reachable" is a statement on the sampled course with the joint path found, from rest over its first place; how
@@ -98,7 +100,7 @@ def check_reach(
     """
     limits = bounds or ReachBounds()
     options = posture or PostureOptions()
-    path, first = _check(robot, frame, course, "believed", limits, nominal, options, solved)
+    path, first = _check(robot, frame, course, "believed", limits, nominal, options, told_of, solved)
     found = [first]
     begin = nominal if path is None else path.postures[0]
     for number, made in enumerate(others if path is not None else (), start=1):
@@ -108,7 +110,7 @@ def check_reach(
             found.append(SurfaceCheck(f"drawn {number}", failure=str(error), time=0.0))
             continue
         near = replace(options, restarts=0)
-        found.append(_check(robot, frame, other, f"drawn {number}", limits, begin, near)[1])
+        found.append(_check(robot, frame, other, f"drawn {number}", limits, begin, near, told_of)[1])
     failed = next((check for check in found if not check.reachable), None)
     if failed is None:
         return ReachCheck(course, tuple(found), path)
@@ -124,12 +126,14 @@ def _check(
     bounds: ReachBounds,
     nominal: Array | None,
     options: PostureOptions,
+    told_of: Callable[[Array], str],
     solved: PosturePath | None = None,
 ) -> tuple[PosturePath | None, SurfaceCheck]:
     try:
         posture = solve_course(robot, frame, course, nominal, options) if solved is None else solved
     except UnreachableError as error:
-        return None, SurfaceCheck(label, failure=str(error), time=error.time)
+        told = "" if error.place is None else told_of(error.place)
+        return None, SurfaceCheck(label, failure=f"{error}{told}", time=error.time)
     left = margins(robot, frame, course, posture, bounds, options.spins)
     failing = [(margin.first_failure, margin) for margin in left if margin.first_failure is not None]
     if not failing:
@@ -140,7 +144,7 @@ def _check(
     words = (
         f"at t = {course.times[sample]:.2f} s, ({x:.3f}, {y:.3f}, {z:.3f}) m, {margin.name}{joint} is"
         f" {margin.values[sample]:.3g} {margin.unit}, must be {'at least' if margin.least else 'at most'}"
-        f" {margin.bound:.3g}"
+        f" {margin.bound:.3g}{told_of(course.places[sample])}"
     )
     return posture, SurfaceCheck(label, left, words, float(course.times[sample]))
 

@@ -33,3 +33,7 @@ class PathRows:
         along = np.sum(off * ways, axis=1) / np.maximum(np.sum(ways * ways, axis=1), 1e-18)
         left = off - np.clip(along, 0.0, 1.0)[:, None] * ways
         return self.lines[int(np.argmin(np.linalg.norm(left, axis=1))) + 1]
+
+    def told_of(self, place: npt.ArrayLike) -> str:
+        """The line of a place (3,) m, to be put behind what is said of that place."""
+        return f", on the way to line {self.line_near(place)} of {self.file.name}"

@@ -81,6 +81,11 @@ class Toolpath:
         """m, on the surface."""
         return float(np.linalg.norm(np.diff(self.places, axis=0), axis=1).sum())
 
+    def told_of(self, place: Array) -> str:
+        """The line of its file from which a place (3,) m comes, to be put behind what is said of that place; empty for
+        a pattern."""
+        return "" if self.rows is None else self.rows.told_of(place)
+
 
 def on_chart(
     surface: SurfaceGeometry, place: Array, along: Array, uv: Array, motion: PathMotion, heading: Array

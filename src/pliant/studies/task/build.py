@@ -11,6 +11,7 @@ from pliant.experiments.model_error import with_mass_error
 from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import ReferenceSource
 from pliant.references.estimated_surface import CHANNELS, OnEstimatedSurface
+from pliant.references.postures.posture import UnreachableError
 from pliant.references.surface_task import SurfaceTask, SurfaceTaskSettings, surface_task
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
@@ -27,6 +28,7 @@ from pliant.telemetry.schema import Channel
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
+_REMEDY = "move it by surface.pose or path.at: `pliant task check` of the same task tries which move would help"
 _SURFACE_CHANNELS = tuple(Channel(name, unit) for name, unit in CHANNELS.items())
 
 
@@ -58,7 +60,11 @@ def _planned(text: str) -> Planned:
     robot, surface, path = laid_out(case, case.robot)
     settings = SurfaceTaskSettings(**case.phases.model_dump(), spins=case.path.spins)
     refuse_path(case, path)
-    references = surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
+    try:
+        references = surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
+    except UnreachableError as error:
+        line = "" if error.place is None else path.told_of(error.place)
+        raise UnreachableError(f"{error}{line}; {_REMEDY}", error.time, error.place) from None
     return Planned(robot, surface, path, references)
 
 

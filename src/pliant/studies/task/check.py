@@ -43,6 +43,7 @@ def checked_path(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
         [partial(course.on, one, case.tool.tool().reach) for one in true],
         posture=PostureOptions(spins=case.path.spins),
         nominal=robot.home,
+        told_of=path.told_of,
     )
 
 

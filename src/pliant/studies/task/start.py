@@ -34,6 +34,7 @@ def start_of(robot: Robot, frame: str, start: tuple[float, ...] | Pose | None) -
     if distance > 1e-3 or angle > 1e-2:
         raise ConfigError(
             f"robot {robot.name!r} cannot start with frame {frame!r} at {np.round(start.xyz, 3).tolist()} m, turned by"
-            f" {list(start.rpy)} degrees: it misses by {1e3 * distance:.1f} mm and {angle:.2f} rad"
+            f" {list(start.rpy)} degrees: it misses by {1e3 * distance:.1f} mm and {angle:.2f} rad: give"
+            " another start.xyz or start.rpy, or joints in its place"
         )
     return q

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from pliant.errors import ConfigError
-from pliant.references.postures.posture import PostureOptions
+from pliant.references.postures.posture import PostureOptions, UnreachableError
 from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.source import FrameMotion
 from pliant.references.trajectories.trajectory import Hold, Trajectory
@@ -49,7 +49,11 @@ def _solved(text: str) -> PostureSource:
     motion = FrameMotion(frames[0], position, rotation).eased(first.ramp)
     nominal = None if first.nominal is None else arm.vector(np.radians(first.nominal), "nominal")
     options = PostureOptions(tolerance=np.inf if first.beyond_reach else 1e-3)
-    return posture_source(arm, motion, frames[1:], one.longest, nominal, options)
+    try:
+        return posture_source(arm, motion, frames[1:], one.longest, nominal, options)
+    except UnreachableError as error:
+        remedy = f"move the track of {frames[0]!r} by `at`, make it smaller by `size`, or say beyond_reach = true"
+        raise UnreachableError(f"{error}; {remedy}", error.time, error.place) from None
 
 
 def _motion(track: Track, robot: Robot, frame: str) -> tuple[Trajectory, Array]:
