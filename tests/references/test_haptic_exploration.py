@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from pathlib import Path
 
 import numpy as np
@@ -13,46 +12,11 @@ from pydantic import ValidationError
 from pliant.errors import ConfigError, PliantError, SignalError
 from pliant.references.exploration.axis import AxisPhase
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.references.exploration.contact_normal import angle_between, turned_normal, within_cone
 from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
 from pliant.references.exploration.sliding_span import SlidingSpan
 from pliant.references.schedule import LatestReference
-from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import exp3, log3
-
-PERIOD = 1e-3
-
-
-def tuned(axes: int = 3, range_: float = 0.02) -> ImpedanceTuning:
-    stiffness = np.array([6000.0] * 3 + [60.0] * (axes - 3))
-    force_max = np.array([100.0] * 3 + [10.0] * (axes - 3))
-    return ImpedanceTuning(stiffness, force_max, np.array([range_] * 3 + [0.2] * (axes - 3)))
-
-
-def task(
-    frame: str = "foot", wrench=(0, 0, 40, 0, 0, 0), tuning: ImpedanceTuning | None = None, **more
-) -> TaskReference:
-    return TaskReference(
-        frame, np.array([0.3, 0.1, 0.0]), wrench=np.array(wrench, float), tuning=tuning or tuned(), **more
-    )
-
-
-def reference(*tasks: TaskReference, tuning=None) -> Reference:
-    return Reference(0.0, tasks, tuning=tuning)
-
-
-def estimate(tick: int, **wrenches) -> Estimate:
-    zero = np.zeros(3)
-    return Estimate(tick * PERIOD, zero, zero, zero, zero, {k: np.array(v, float) for k, v in wrenches.items()})
-
-
-def play(source: HapticExploration, ticks: int, first: int = 0, state=None, **wrenches):
-    """The last reference and the state after a number of ticks with constant wrenches."""
-    state = source.init(estimate(first, **wrenches)) if state is None else state
-    out = None
-    for tick in range(first, first + ticks):
-        out, state = source.step(estimate(tick, **wrenches), state)
-    return out, state
+from tests.references.explored import PERIOD, estimate, play, reference, task, tuned
 
 
 def test_offset_moves_against_the_missing_force_and_is_reported() -> None:
@@ -156,55 +120,6 @@ def test_pause_does_not_make_the_target_jump() -> None:
     before, state = play(source, 20, foot=(0, 0, 10, 0, 0, 0))
     after, _ = source.step(estimate(20 + 90, foot=(0, 0, 10, 0, 0, 0)), state)
     assert abs(after.tasks[0].position[2] - before.tasks[0].position[2]) <= 0.15 * 0.02 + 1e-12
-
-
-def slide(direction: str, friction: float, tilt: float) -> np.ndarray:
-    """Offset after sliding along a tilted plane that pushes back 10 N along its normal, with friction."""
-    normal = np.array([-math.sin(tilt), 0.0, math.cos(tilt)])
-    along = np.array([math.cos(tilt), 0.0, math.sin(tilt)])
-    velocity = np.concatenate([0.1 * along, np.zeros(3)])
-    force = np.concatenate([10.0 * (normal - friction * along), np.zeros(3)])
-    source = HapticExploration(
-        LatestReference(reference(task(velocity=velocity))),
-        ExplorationConfig(direction=direction),  # type: ignore[arg-type]
-    )
-    out, _ = play(source, 250, foot=force)
-    offset = out.diagnostics["exploration/foot/offset"]
-    return np.array([offset @ normal, offset @ along]) / np.linalg.norm(offset)
-
-
-@pytest.mark.parametrize("friction", [0.0, 0.3, 0.8])
-def test_offset_follows_the_normal_whatever_the_friction(friction: float) -> None:
-    along_normal, along_tangent = slide("normal", friction, 0.3)
-    assert along_normal < -0.99
-    assert abs(along_tangent) < 0.1
-    assert abs(slide("axes", friction, 0.3)[1]) > 0.25  # baseline: straight down leaks into the tangent
-
-
-def test_normal_is_left_alone_at_rest_and_kept_in_its_cone() -> None:
-    up, force = (0.0, 0.0, 1.0), (5.0, 0.0, 10.0)
-    assert turned_normal(up, force, (0.0, 0.0, 0.0), 1.0, PERIOD, 0.05, 2.0) == up
-    turned = turned_normal(up, force, (0.0, 0.1, 0.0), 1.0, PERIOD, 0.05, 2.0)
-    assert 0.0 < angle_between(up, turned) <= 2.0 * PERIOD * 1.01
-    far = (math.sin(1.2), 0.0, math.cos(1.2))
-    assert angle_between(up, within_cone(far, up, 0.5)) == pytest.approx(0.5)
-    assert within_cone((0.0, 0.0, -1.0), up, 0.5) == up
-
-
-def test_normal_mode_keeps_the_bound_of_every_axis() -> None:
-    force = (8, 3, 2, 0, 0, 0)
-    velocity = np.array([0.0, 0.05, 0.02, 0, 0, 0])
-    source = HapticExploration(
-        LatestReference(reference(task(velocity=velocity))), ExplorationConfig(direction="normal")
-    )
-    state = source.init(estimate(0))
-    last = np.zeros(3)
-    for tick in range(600):
-        out, state = source.step(estimate(tick, foot=force), state)
-        offset = out.diagnostics["exploration/foot/offset"]
-        assert np.all(np.abs(offset) <= 0.02)
-        assert np.all(np.abs(offset - last) <= 0.3 * PERIOD + 1e-12)  # nothing jumps
-        last = offset
 
 
 def test_span_is_that_of_the_window() -> None:

@@ -28,11 +28,7 @@ from pliant.simulation import (
     floor,
 )
 from pliant.spatial import rpy
-
-G = 9.81  # m/s²
-RIGID = Surface(stiffness=1e6, damping=1e4, friction=0.5, friction_moving=0.3)
-FINE = 2e-5  # s
-
+from tests.simulation.bench import FINE, RIGID, G
 
 # ---------------------------------------------------------------------- in the plant
 
