@@ -1,6 +1,7 @@
 // Extension module pliant._guard. Every function answers whether a signal is
 // sound beyond doubt; where it says no, src/pliant/guard/sound.py finds out
 // what is wrong, or that nothing is.
+#include "bind_step_limit.hpp"
 #include "numbers.hpp"
 
 namespace {
@@ -13,6 +14,7 @@ using pliant::guard::Look;
 #define PLIANT_NAME(name) PyObject* name = PyUnicode_InternFromString(#name)
 struct Fields {
   PLIANT_NAME(acceleration);
+  PLIANT_NAME(clamped);
   PLIANT_NAME(damping);
   PLIANT_NAME(damping_std);
   PLIANT_NAME(disturbance);
@@ -156,16 +158,21 @@ bool is_reference(nb::handle reference, long n) {
   return look.good();
 }
 
-bool is_within(nb::handle torque, nb::handle bound) {
-  Numbers numbers[2];
-  const double* limit = numbers[1].read(bound, "bound", {-1}).data;
-  const long n = numbers[1].rows();
+// With a bound given, no torque may be larger than it.
+bool is_command(nb::handle command, long n, nb::handle bound) {
+  const Fields& f = fields();
   Look look;
+  look.time(field(command, f.time, look));
+  const nb::object torque = field(command, f.torque, look);
   look.array(torque, {n});
+  look.array(field(command, f.clamped, look), {n});
   if (!look.good()) return false;
-  const Rows rows = numbers[0].read(torque, "torque", {n});
+  if (bound.is_none()) return true;
+  Numbers numbers[2];
+  const double* sent = numbers[0].vector(torque, "torque", n);
+  const double* limit = numbers[1].vector(bound, "bound", n);
   for (long j = 0; j < n; ++j)
-    if (!(std::abs(rows.data[j]) <= limit[j])) return false;
+    if (!(std::abs(sent[j]) <= limit[j])) return false;
   return true;
 }
 
@@ -175,5 +182,6 @@ NB_MODULE(_guard, m) {
   m.def("is_reading", &is_reading, "reading"_a, "n"_a, "frames"_a);
   m.def("is_estimate", &is_estimate, "estimate"_a, "n"_a);
   m.def("is_reference", &is_reference, "reference"_a, "n"_a);
-  m.def("is_within", &is_within, "torque"_a, "bound"_a);
+  m.def("is_command", &is_command, "command"_a, "n"_a, "bound"_a.none());
+  pliant::guard::bind_step_limit(m);
 }

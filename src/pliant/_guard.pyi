@@ -3,6 +3,7 @@
 True: the signal is sound beyond doubt, made of NumPy's own arrays of float64. False: `pliant.guard.sound` has to look.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pliant.spatial import Array
@@ -16,5 +17,40 @@ def is_estimate(estimate: Any, n: int) -> bool:
 def is_reference(reference: Any, n: int) -> bool:
     """A reference for n joints."""
 
-def is_within(torque: Any, bound: Array) -> bool:
-    """A torque of which no entry is larger than its bound (n,), N·m."""
+def is_command(command: Any, n: int, bound: Array | None) -> bool:
+    """A command for n joints of which no torque is larger than its bound (n,), N·m, if there is one."""
+
+class StepLimit:
+    """The bound on torque steps of n joints. Sizes that are wrong raise ValueError."""
+
+    def __init__(self, step_max: Sequence[float]) -> None:
+        """Args: step_max: (n,) N·m, may be infinite."""
+
+    @property
+    def memory_size(self) -> int:
+        """Of the memory: joint positions (n), rad; torque sent (n) and torque held back (n), N·m; J that was withheld
+        from the robot."""
+
+    def step(
+        self,
+        torque: Array,
+        clamped: Array,
+        q: Array,
+        diagnostics: Mapping[str, Any],
+        channel: str,
+        memory: Array,
+        out: Array,
+    ) -> float | None:
+        """One tick; changes `memory` and fills `out`.
+
+        Args:
+            torque, clamped: (n,) N·m that are asked for, and were clamped before.
+            q: (n,) rad.
+            diagnostics: of the controller, read where a part of the torque is held back.
+            channel: of the diagnostics, J that may be spent; where it is missing nothing gives way.
+            memory: state.
+            out: (2 n,) torque and clamped torque, N·m.
+
+        Returns:
+            By how much the bound is exceeded, as a share of it; None: the torque is as it was asked for.
+        """

@@ -13,7 +13,7 @@ from pliant import _guard
 from pliant.environment import Environment, EstimatedSurface
 from pliant.guard import sound
 from pliant.guard.faults import Fault
-from pliant.signals import Estimate, Measurement, Preview, Reference, TaskReference
+from pliant.signals import Command, Estimate, Measurement, Preview, Reference, TaskReference
 
 N, FRAMES = 3, ("foot", "knee")
 ONES = np.ones(N)
@@ -84,7 +84,11 @@ def test_arrays_with_steps_between_their_numbers_are_read() -> None:
 
 def test_a_torque_at_its_bound_is_within() -> None:
     bound = np.array([1.0, 2.0, np.inf])
-    assert _guard.is_within(np.array([-1.0, 2.0, 1e9]), bound)
+    command = Command(0.1, np.array([-1.0, 2.0, 1e9]), np.zeros(N))
+    assert _guard.is_command(command, N, bound)
     for torque in ([1.0 + 1e-12, 0.0, 0.0], [0.0, -2.1, 0.0], [np.nan, 0.0, 0.0], [0.0, 0.0]):
-        assert not _guard.is_within(np.array(torque), bound)
-    assert not _guard.is_within([0.0, 0.0, 0.0], bound)  # no array: not beyond doubt
+        assert not _guard.is_command(replace(command, torque=np.array(torque)), N, bound)
+    assert _guard.is_command(replace(command, torque=np.full(N, 3.0)), N, None)
+    no_array: Any = [0.0, 0.0, 0.0]  # not beyond doubt
+    for other in ({"torque": no_array}, {"clamped": no_array}, {"clamped": np.full(N, np.nan)}, {"time": np.inf}):
+        assert not _guard.is_command(replace(command, **other), N, bound)

@@ -35,7 +35,7 @@ class Damping:
     @property
     def any(self) -> bool:
         """Whether it damps anything."""
-        return self != Damping()
+        return self.joint_damping > 0.0 or self.motion_damping > 0.0
 
     def torque(
         self,

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from pliant import _guard
 from pliant.errors import ConfigError
 from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
 from pliant.quantity import quantity
@@ -40,14 +41,9 @@ class StepLimitState:
     """State of the inner controller, and the energy of the bound."""
 
     inner: Any
-    q: Array
-    """(n,) joint positions of the last tick, rad"""
-    sent: Array
-    """(n,) torque of the last tick, N·m"""
-    held_back: Array
-    """(n,) torque that the bound took away in the last tick, N·m"""
-    energy: float
-    """J that the bound withheld from the robot since the start (negative: released to it)"""
+    memory: Array
+    """joint positions of the last tick, rad, its torque and what was held back of it, N·m; J withheld since the start
+    (negative: released to the robot)"""
 
 
 class StepLimit(Controller[StepLimitState]):
@@ -79,6 +75,7 @@ class StepLimit(Controller[StepLimitState]):
         self.inner = inner
         self.step_max: Array = share * robot.torque_limit
         self._limit: Array = robot.torque_limit
+        self._core = _guard.StepLimit(self.step_max.tolist())
 
     @property
     def needs(self) -> Needs:
@@ -95,35 +92,19 @@ class StepLimit(Controller[StepLimitState]):
     def init(self, estimate: Estimate) -> StepLimitState:
         """The first torque may differ by one step from the torque that the robot reports; with no report it is
         free."""
-        zero = np.zeros_like(estimate.q)
         sent = np.clip(np.nan_to_num(estimate.torque_sent, nan=0.0), -self._limit, self._limit)
-        return StepLimitState(self.inner.init(estimate), estimate.q, sent, zero, 0.0)
+        memory = np.concatenate([estimate.q, sent, np.zeros(len(sent) + 1)])
+        return StepLimitState(self.inner.init(estimate), memory)
 
     def step(self, estimate: Estimate, reference: Reference, state: StepLimitState) -> tuple[Command, StepLimitState]:
         command, inner = self.inner.step(estimate, reference, state.inner)
-        way = estimate.q - state.q
-        energy = state.energy + float(state.held_back @ way)
-        wanted, sent = command.torque, state.sent
-        torque = np.minimum(np.maximum(wanted, sent - self.step_max), sent + self.step_max)
-        held_back, exceeded, clamped = wanted - torque, 0.0, command.clamped
-        if held_back.any():
-            share = _affordable(held_back, way, command.diagnostics)
-            if share < 1.0:
-                held_back = share * held_back
-                torque = wanted - held_back
-                exceeded = max(float((np.abs(torque - sent) / self.step_max).max()) - 1.0, 0.0)
-            inner, clamped = self.inner.kept_back(inner, held_back), clamped + held_back
-        bounded = Command(command.time, torque, clamped, _with(command.diagnostics, energy, exceeded))
-        return bounded, StepLimitState(inner, estimate.q, torque, held_back, energy)
-
-
-def _affordable(held_back: Array, way: Array, diagnostics: Mapping[str, Any]) -> float:
-    """Share of the torque that may be withheld (n,), for a step (n,) rad like the last one."""
-    if SPENDABLE not in diagnostics:
-        return 1.0
-    cost = -float(held_back @ way)
-    spendable = float(diagnostics[SPENDABLE])
-    return spendable / cost if cost > spendable else 1.0
+        wanted, channels, n = command.torque, command.diagnostics, len(self.step_max)
+        memory, out = state.memory.copy(), np.empty(2 * n)
+        exceeded = self._core.step(wanted, command.clamped, estimate.q, channels, SPENDABLE, memory, out)
+        if exceeded is not None:
+            inner = self.inner.kept_back(inner, memory[2 * n : 3 * n].copy())
+        channels = _with(channels, float(memory[-1]), exceeded or 0.0)
+        return Command(command.time, out[:n], out[n:], channels), StepLimitState(inner, memory)
 
 
 def _with(inner: Mapping[str, Any], energy: float, exceeded: float) -> Mapping[str, Any]:

@@ -143,6 +143,8 @@ class Guard:
         Its diagnostics are for the log alone and are not looked at.
         """
         n = watched.n
+        if isinstance(command, Command) and _guard.is_command(command, n, self._bound):  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own part)
+            return command, Fault.NONE
         if not isinstance(command, Command) or not sound.is_torque(command.time, command.torque, n):  # pyright: ignore[reportUnnecessaryIsInstance] (somebody's own part)
             watched.refused = command
             return command, Fault.COMMAND
@@ -192,7 +194,7 @@ class Guard:
 
     def _within(self, torque: Array) -> Array:
         """The torque itself if it is within the limits, else the clamped torque."""
-        if self._limit is None or self._bound is None or _guard.is_within(torque, self._bound):
+        if self._limit is None or self._bound is None:
             return torque
         if not np.count_nonzero(np.abs(torque) > self._bound):
             return torque
