@@ -1,5 +1,5 @@
 // Extension module pliant._plant.
-#include "bind_flaws.hpp"
+#include "bind_imperfect_robot.hpp"
 #include "bind_physics.hpp"
 
 using namespace pliant::plant;
@@ -14,19 +14,19 @@ NB_MODULE(_plant, m) {
            "frame_site"_a, "sensors"_a, "pushes"_a)
       .def_prop_ro("outcome_size", [](const PyPhysics& p) { return p.physics().outcome_size(); })
       .def("step", &PyPhysics::step, "data"_a, "torque"_a, "pushes"_a, "out"_a.noconvert());
-  nb::class_<PyFlaws>(m, "Flaws")
-      .def("__init__", &init_flaws, nb::kw_only(), "n"_a, "frames"_a, "ticks"_a, "inner"_a, "under_way"_a, "limit"_a,
-           "dry"_a, "viscous"_a, "noise"_a, "friction_velocity"_a, "kept"_a, "loop"_a, "ripple"_a, "late"_a,
+  nb::class_<PyImperfectRobot>(m, "ImperfectRobot")
+      .def("__init__", &init_imperfect_robot, nb::kw_only(), "n"_a, "frames"_a, "ticks"_a, "inner"_a, "under_way"_a,
+           "limit"_a, "dry"_a, "viscous"_a, "noise"_a, "friction_velocity"_a, "kept"_a, "loop"_a, "ripple"_a, "late"_a,
            "noise_q"_a, "noise_v"_a, "noise_torque"_a, "noise_wrench"_a)
-      .def_prop_ro("memory_size", &PyFlaws::memory_size)
-      .def_prop_ro("draws", &PyFlaws::draws)
-      .def_prop_ro("reading_size", &PyFlaws::reading_size)
-      .def("init", &PyFlaws::init, "memory"_a.noconvert(), "held"_a, "gain"_a, "bias"_a, "sensor_gain"_a,
+      .def_prop_ro("memory_size", &PyImperfectRobot::memory_size)
+      .def_prop_ro("draws", &PyImperfectRobot::draws)
+      .def_prop_ro("reading_size", &PyImperfectRobot::reading_size)
+      .def("init", &PyImperfectRobot::init, "memory"_a.noconvert(), "held"_a, "gain"_a, "bias"_a, "sensor_gain"_a,
            "sensor_offset"_a, "now"_a, "draw"_a, "out"_a.noconvert())
-      .def("drive", &PyFlaws::drive, "memory"_a.noconvert(), "command"_a, "asked"_a.noconvert())
-      .def("gear", &PyFlaws::gear, "memory"_a.noconvert(), "draw"_a, "index"_a, "torque"_a.noconvert())
-      .def("moved", &PyFlaws::moved, "memory"_a.noconvert(), "v"_a)
-      .def("sense", &PyFlaws::sense, "memory"_a.noconvert(), "draw"_a, "now"_a, "out"_a.noconvert())
-      .def("period", &PyFlaws::period, "memory"_a.noconvert(), "draws"_a, "robot"_a, "data"_a, "command"_a, "pushes"_a,
-           "out"_a.noconvert());
+      .def("drive", &PyImperfectRobot::drive, "memory"_a.noconvert(), "command"_a, "asked"_a.noconvert())
+      .def("gear", &PyImperfectRobot::gear, "memory"_a.noconvert(), "draw"_a, "index"_a, "torque"_a.noconvert())
+      .def("moved", &PyImperfectRobot::moved, "memory"_a.noconvert(), "v"_a)
+      .def("sense", &PyImperfectRobot::sense, "memory"_a.noconvert(), "draw"_a, "now"_a, "out"_a.noconvert())
+      .def("period", &PyImperfectRobot::period, "memory"_a.noconvert(), "draws"_a, "robot"_a, "data"_a, "command"_a,
+           "pushes"_a, "out"_a.noconvert());
 }

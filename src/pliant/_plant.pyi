@@ -44,7 +44,7 @@ class Physics:
         """Holds a torque (n,) within the limits for a period; writes `out`. Returns a bit for each contact frame that
         touches, or -1 where a joint's speed is not finite or not allowed."""
 
-class Flaws:
+class ImperfectRobot:
     """An imperfect robot round a perfect one. What it remembers is one row of numbers, `memory`.
 
     Raises ValueError: values that do not fit the robot.

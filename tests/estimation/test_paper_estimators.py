@@ -43,7 +43,7 @@ def pressed(estimator: Estimator, swing: float = 0.03, source: type[Sway] = Sway
 
 
 def test_the_modelled_torque_is_the_one_at_the_links() -> None:
-    """RNEA − Jᵀλ gives what the joint sensors of a robot without flaws say; without τ_ext it is far off."""
+    """RNEA − Jᵀλ gives what the joint sensors of a robot without imperfections say; without τ_ext it is far off."""
     modelled = ModelledTorqueEstimator(WrenchEstimator(ROBOT), ROBOT, "tool", PERIOD)
     ticks = pressed(modelled)
     off = np.array([tick.estimate.torque - tick.truth.torque for tick in ticks])

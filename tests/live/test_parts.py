@@ -176,12 +176,12 @@ def test_imperfections_come_and_go_while_it_moves() -> None:
     first, world = plant.init()
     slow = plant.built.model_copy(update={"actuation": ActuationConfig(bandwidth=5.0)})
     plant.rehearse(None, slow)
-    plant._shared.requests = Requests(flaws=slow)
+    plant._shared.requests = Requests(imperfections=slow)
     torque = np.full(plant.physics.robot.n, 2.0)  # type: ignore[union-attr]
     command = replace(still(plant.physics), torque=torque)  # type: ignore[arg-type]
     reading, world = plant.step(command, world)
     assert np.all(np.abs(reading.torque - first.torque) < 0.2)  # 5 Hz have let a thirtieth through by now
-    plant._shared.requests = Requests(flaws=plant.built)
+    plant._shared.requests = Requests(imperfections=plant.built)
     reading, world = plant.step(command, world)
     np.testing.assert_allclose(reading.torque, torque)
 

@@ -7,8 +7,8 @@ import pytest
 from pydantic import ValidationError
 
 from pliant.simulation.imperfections.actuation import ActuationConfig
+from pliant.simulation.imperfections.chain import drawn_once
 from pliant.simulation.imperfections.config import Imperfections
-from pliant.simulation.imperfections.flaws import drawn_once
 from tests.simulation.scripted import moving, readings
 
 DT = 1e-3  # s

@@ -74,8 +74,8 @@ def test_half_the_physics_step_changes_little() -> None:
 @pytest.mark.parametrize("controller", THREE)
 def test_the_residual_is_reached_in_a_noisy_loop(controller: str) -> None:
     """Noise of [FFMPC] on every sensor, imperfect actuation, 8 iterations: KKT 1e-4 in 99.9 % of the solves."""
-    flaws = Imperfections.p3(computation_delay=0.0).model_dump()
-    experiment = STUDY.build(_config(controller=controller, preset="paper", imperfections=flaws, seed=3))
+    imperfections = Imperfections.p3(computation_delay=0.0).model_dump()
+    experiment = STUDY.build(_config(controller=controller, preset="paper", imperfections=imperfections, seed=3))
     residuals: list[float] = []
     torques: list[float] = []
 

@@ -1,4 +1,4 @@
-"""Motors and gears in Python: the twin of cpp/plant/flaws.cpp."""
+"""Motors and gears in Python: the twin of cpp/plant/imperfect_robot.cpp."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""The imperfect robot in Python, the twin of cpp/plant/flaws.cpp: any plant, with late and noisy sensors, drives, gears
-and computation time.
+"""The imperfect robot in Python, the twin of cpp/plant/imperfect_robot.cpp: any plant, with late and noisy sensors,
+drives, gears and computation time.
 
 command ─▶ computation delay ─▶ torque loop ─▶ actuation ─▶ plant ─▶ ripple ─▶ sensing ─▶ measurement
                                      ▲                                             │

@@ -1,4 +1,4 @@
-"""Force ripple in Python: the twin of cpp/plant/flaws.cpp."""
+"""Force ripple in Python: the twin of cpp/plant/imperfect_robot.cpp."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Late and noisy sensors in Python: the twin of cpp/plant/flaws.cpp."""
+"""Late and noisy sensors in Python: the twin of cpp/plant/imperfect_robot.cpp."""
 
 from __future__ import annotations
 

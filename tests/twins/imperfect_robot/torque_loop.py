@@ -1,4 +1,4 @@
-"""The torque loop in Python: the twin of cpp/plant/flaws.cpp."""
+"""The torque loop in Python: the twin of cpp/plant/imperfect_robot.cpp."""
 
 from __future__ import annotations
 

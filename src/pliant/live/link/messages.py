@@ -52,7 +52,7 @@ class Surroundings:
 
 
 @dataclass(frozen=True, slots=True)
-class Flaws:
+class NewImperfections:
     """The robot with other imperfections."""
 
     config: Imperfections
@@ -144,7 +144,7 @@ class Ready(Queued):
     """s"""
     scene: Scene | None
     """None: it cannot be changed here"""
-    flaws: Imperfections | None
+    imperfections: Imperfections | None
     """None: they cannot be changed here"""
     warnings: tuple[str, ...] = ()
     restarts: bool = True
@@ -240,6 +240,6 @@ class Note(Queued):
 
 
 Message = (
-    Begin | Parameters | Surroundings | Flaws | Aim | TaskScaling | Flow | StepOnce | PushNow | Pull | Record
+    Begin | Parameters | Surroundings | NewImperfections | Aim | TaskScaling | Flow | StepOnce | PushNow | Pull | Record
     | Ready | SceneChanged | Picture | Pulse | Samples | Note
 )  # fmt: skip

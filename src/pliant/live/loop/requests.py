@@ -31,7 +31,7 @@ class Requests:
     scaling: TaskScaling = field(default_factory=TaskScaling)
     scene: Scene | None = None
     """None: the one the plant was built with"""
-    flaws: Imperfections | None = None
+    imperfections: Imperfections | None = None
     """None: those the plant was built with"""
     pull: Pull | None = None
     pulled_at: float = 0.0

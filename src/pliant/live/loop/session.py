@@ -12,9 +12,9 @@ from pliant.experiments.base import CaseConfig, Experiment, Study
 from pliant.experiments.runner import run_info
 from pliant.live.link.messages import (
     Aim,
-    Flaws,
     Flow,
     Message,
+    NewImperfections,
     Note,
     Parameters,
     Pull,
@@ -113,7 +113,7 @@ class Session:
                 columns=columns.names,
                 period=self.plant.period,
                 scene=physics.scene,
-                flaws=self.shared.requests.flaws or self.plant.built,
+                imperfections=self.shared.requests.imperfections or self.plant.built,
                 warnings=self.experiment.warnings,
                 restarts=self._restarts,
                 refused=self.refused,
@@ -159,9 +159,9 @@ class Session:
                 self.retune(message.config)
             case Surroundings():
                 self._surround(message)
-            case Flaws():
+            case NewImperfections():
                 self.plant.rehearse(None, message.config)
-                self.shared.requests = replace(requests, flaws=message.config)
+                self.shared.requests = replace(requests, imperfections=message.config)
             case Record():
                 self._record(message)
             case _:

@@ -27,7 +27,7 @@ class SteeredWorld:
     """the innermost plant of `plant`"""
     inner: Any
     scene: Scene | None
-    flaws: Imperfections | None
+    imperfections: Imperfections | None
     """the requests that `plant` was built for"""
     last: Measurement
 
@@ -62,7 +62,7 @@ class SteeredPlant(Plant[SteeredWorld]):
 
     def step(self, command: Command, world: SteeredWorld) -> tuple[Measurement, SteeredWorld]:
         requests = self._shared.requests
-        if requests.scene is not world.scene or requests.flaws is not world.flaws:
+        if requests.scene is not world.scene or requests.imperfections is not world.imperfections:
             self._rebuild(world)
         self._push(world)
         world.last, world.inner = world.plant.step(command, world.inner)
@@ -71,13 +71,13 @@ class SteeredPlant(Plant[SteeredWorld]):
     def truth(self, world: SteeredWorld) -> Truth | None:
         return world.plant.truth(world.inner)
 
-    def rehearse(self, scene: Scene | None, flaws: Imperfections | None) -> MujocoPlant | None:
+    def rehearse(self, scene: Scene | None, imperfections: Imperfections | None) -> MujocoPlant | None:
         """Builds the requested plant as a test, keeps only its physics. Raises the error if it cannot be built."""
         if self.physics is None:
             return None
         physics = self.physics if scene is None else with_scene(self.physics, scene)
-        if flaws is not None:
-            ImperfectPlant(physics, flaws, seed=self._seed, period=self.period).init()
+        if imperfections is not None:
+            ImperfectPlant(physics, imperfections, seed=self._seed, period=self.period).init()
         return physics
 
     def _rebuild(self, world: SteeredWorld) -> None:
@@ -87,14 +87,14 @@ class SteeredPlant(Plant[SteeredWorld]):
         old: World = world.inner.inner if isinstance(world.plant, ImperfectPlant) else world.inner
         physics = world.physics if requests.scene is None else with_scene(self.physics, requests.scene)
         measurement, inner = physics.resume(old)
-        world.physics, world.scene, world.flaws = physics, requests.scene, requests.flaws
-        flaws = requests.flaws or self.built
-        if not isinstance(self.inner, ImperfectPlant) and flaws == self.built:
+        world.physics, world.scene, world.imperfections = physics, requests.scene, requests.imperfections
+        imperfections = requests.imperfections or self.built
+        if not isinstance(self.inner, ImperfectPlant) and imperfections == self.built:
             world.plant, world.inner = physics, inner
             return
         resumed = _Resumed(physics, measurement, inner)
         held = world.last.torque_sent
-        world.plant = ImperfectPlant(resumed, flaws, seed=self._seed, period=self.period, holding_torque=held)
+        world.plant = ImperfectPlant(resumed, imperfections, seed=self._seed, period=self.period, holding_torque=held)
         _, world.inner = world.plant.init()
 
     def _push(self, world: SteeredWorld) -> None:

@@ -11,7 +11,7 @@ import viser
 from pliant.configuration import merged
 from pliant.entries import ControllerConfig
 from pliant.experiments.base import CaseConfig
-from pliant.live.link.messages import Flaws, Message, Parameters, Ready, Surroundings
+from pliant.live.link.messages import Message, NewImperfections, Parameters, Ready, Surroundings
 from pliant.live.link.steering_lock import SteeringLock
 from pliant.live.loop.tuning import online_fields, online_group, parameters_of, wiring_of
 from pliant.live.page.basic import is_basic_parameter, is_basic_value
@@ -67,7 +67,7 @@ class CaseForms:
         self._suited: ControllerConfig | None = None
         self._wanted: CaseConfig | None = None
         self._scene: SceneForm | None = None
-        self._flaws: Imperfections | None = None
+        self._imperfections: Imperfections | None = None
 
     def begin(self, ready: Ready) -> None:
         """A run begins."""
@@ -83,11 +83,13 @@ class CaseForms:
         if self._scene is not None and ready.scene is not None and ready.scene.things:
             with self._places.surfaces:
                 self._forms.append(Form(self._gui, self._steering, self._scene.group(), self._change_scene))
-        self._flaws = ready.flaws
-        if ready.flaws is not None:
-            flaws = group_of(ready.flaws, skip=frozenset({"joint_damping"}))
+        self._imperfections = ready.imperfections
+        if ready.imperfections is not None:
+            imperfections = group_of(ready.imperfections, skip=frozenset({"joint_damping"}))
             with self._places.robot:
-                self._forms.append(Form(self._gui, self._steering, flaws, self._change_flaws, expanded=False))
+                self._forms.append(
+                    Form(self._gui, self._steering, imperfections, self._change_imperfections, expanded=False)
+                )
         if ready.restarts and not self._asked_for(ready):
             self._case_form(ready.config)
 
@@ -146,10 +148,10 @@ class CaseForms:
         if self._scene is not None:
             self._send(Surroundings(self._scene.changed(place, value)))
 
-    def _change_flaws(self, place: Place, value: Any) -> None:
-        if self._flaws is not None:
-            self._flaws = merged(self._flaws, nested(place, value))
-            self._send(Flaws(self._flaws))
+    def _change_imperfections(self, place: Place, value: Any) -> None:
+        if self._imperfections is not None:
+            self._imperfections = merged(self._imperfections, nested(place, value))
+            self._send(NewImperfections(self._imperfections))
 
     def _change_case(self, place: Place, value: Any) -> None:
         if self._wanted is not None:

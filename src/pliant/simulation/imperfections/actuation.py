@@ -1,4 +1,4 @@
-"""Motors and gears: from the torque command of the drives to the joint torque (cpp/plant/flaws.cpp).
+"""Motors and gears: from the torque command of the drives to the joint torque (cpp/plant/imperfect_robot.cpp).
 
     τ = a F(τ_m) + b − μ_s tanh(v/v_0) − μ_v v + ν        F the peak torque, then a first-order lag
 

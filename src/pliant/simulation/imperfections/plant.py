@@ -18,9 +18,9 @@ from pliant.interfaces import Compensation, Plant
 from pliant.sampling import whole_periods
 from pliant.signals import Command, Measurement, Truth
 from pliant.simulation.compiled_period import compiled_period_of
+from pliant.simulation.imperfections.chain import Sizes, chain_of, drawn_once, draws_of, wrench_sources
 from pliant.simulation.imperfections.config import Imperfections
 from pliant.simulation.imperfections.draws import Draws
-from pliant.simulation.imperfections.flaws import Sizes, drawn_once, draws_of, flaws_of, wrench_sources
 from pliant.simulation.plant import MujocoPlant
 from pliant.spatial import Array, as_vector
 
@@ -32,7 +32,7 @@ class ImperfectWorld:
     inner: Any
     """state of the plant inside"""
     memory: Array
-    """state of the chain, one row of numbers (cpp/plant/flaws.cpp)"""
+    """state of the chain, one row of numbers (cpp/plant/imperfect_robot.cpp)"""
     draws: Draws
     """its random numbers"""
     time: float
@@ -95,13 +95,13 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         self._build(n, tuple(true.wrenches))
         held = true.torque_sent if self._holding_torque is None else self._holding_torque
         held = as_vector(held, n, "holding_torque")
-        memory, out = np.empty(self._flaws.memory_size), np.empty(self._flaws.reading_size)
+        memory, out = np.empty(self._chain.memory_size), np.empty(self._chain.reading_size)
         draws = draws_of(self.config, self._sizes, self.seed)
         sources = ("sensing.q", "sensing.v", "sensing.torque", *wrench_sources(self._sizes.sensors))
         drawn = drawn_once(self.config, n, self.seed)
         now = self._row(true)
         now[2 * n : 3 * n] = held
-        self._flaws.init(memory, held, **drawn, now=now, draw=draws.single(sources), out=out)
+        self._chain.init(memory, held, **drawn, now=now, draw=draws.single(sources), out=out)
         return self._reading(true.time, out), ImperfectWorld(inner, memory, draws, true.time)
 
     def step(self, command: Command, world: ImperfectWorld) -> tuple[Measurement, ImperfectWorld]:
@@ -114,11 +114,11 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         if self._period is None or not isinstance(self.inner, MujocoPlant):
             reading = self._in_python(command, draws, world)
         else:
-            split = self._flaws.reading_size
+            split = self._chain.reading_size
             reading = np.empty(split + self._period.size)
             robot, core, torque = world.inner, self._period.core, command.torque
             pushes = self._period.rows(robot.pushes)
-            mask = self._flaws.period(world.memory, draws, core, robot.data, torque, pushes, reading)
+            mask = self._chain.period(world.memory, draws, core, robot.data, torque, pushes, reading)
             world.time = self.inner.passed(robot, self._ticks * self._inner_steps, reading[split:], mask)
         return self._reading(world.time, reading), world
 
@@ -130,21 +130,21 @@ class ImperfectPlant(Plant[ImperfectWorld]):
     def _build(self, n: int, sensors: tuple[str, ...]) -> None:
         """What depends on the number of joints and sensors, which the plant tells by its first measurement."""
         self._sizes = Sizes(n, sensors, self._ticks, self._inner_steps, self.inner.period)
-        self._flaws = flaws_of(self.config, self._sizes)
+        self._chain = chain_of(self.config, self._sizes)
         self._period = compiled_period_of(self.inner)
 
     def _in_python(self, command: Command, draws: Array, world: ImperfectWorld) -> Array:
         """A period with a plant that is not compiled. Returns a reading in a row."""
-        n, flaws, memory = self._sizes.n, self._flaws, world.memory
-        out, asked, sent = np.empty(flaws.reading_size), np.empty(n), np.zeros(n)
+        n, chain, memory = self._sizes.n, self._chain, world.memory
+        out, asked, sent = np.empty(chain.reading_size), np.empty(n), np.zeros(n)
         wanted = np.ascontiguousarray(command.torque, dtype=np.float64)
         for draw in draws:
-            flaws.drive(memory, wanted, asked)
+            chain.drive(memory, wanted, asked)
             sent += asked / self._ticks
             for step in range(self._inner_steps - 1):
                 self._geared(draw, step, world)
             true = self._geared(draw, self._inner_steps - 1, world)
-            flaws.sense(memory, draw, self._row(true), out)
+            chain.sense(memory, draw, self._row(true), out)
             world.time = true.time
         out[3 * n : 4 * n] = sent
         return out
@@ -152,9 +152,9 @@ class ImperfectPlant(Plant[ImperfectWorld]):
     def _geared(self, draw: Array, step: int, world: ImperfectWorld) -> Measurement:
         """A step of the plant inside. Returns what perfect sensors say at its end."""
         torque = np.empty(self._sizes.n)
-        self._flaws.gear(world.memory, draw, step, torque)
+        self._chain.gear(world.memory, draw, step, torque)
         true, world.inner = self.inner.step(Command(world.time, torque, np.zeros_like(torque)), world.inner)
-        self._flaws.moved(world.memory, np.ascontiguousarray(true.v))
+        self._chain.moved(world.memory, np.ascontiguousarray(true.v))
         return true
 
     def _row(self, true: Measurement) -> Array:

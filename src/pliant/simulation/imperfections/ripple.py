@@ -1,5 +1,5 @@
 """Force ripple from the gearing: an oscillation whose frequency follows the joints' speed ([FFMPC] sec. VIII-C;
-cpp/plant/flaws.cpp).
+cpp/plant/imperfect_robot.cpp).
 
 The published hardware shows 30–40 Hz during polishing, a frequency proportional to speed and an amplitude that grows
 with force and speed; this is the simplest law that does so: every component of a wrench is scaled by `1 + a·sin φ`,

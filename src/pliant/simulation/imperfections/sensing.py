@@ -1,4 +1,4 @@
-"""Sensors with delay and noise ([FFMPC] eq. 30–32; cpp/plant/flaws.cpp).
+"""Sensors with delay and noise ([FFMPC] eq. 30–32; cpp/plant/imperfect_robot.cpp).
 
 The mismatch between joint torque sensors and force/torque sensor that the published hardware shows ([FFMPC] sec.
 VIII-C) is a gain and an offset of each joint torque sensor, drawn once per run. The torque that was sent has no delay,

@@ -1,5 +1,5 @@
 """The torque loop in the robot's drives: feed-forward plus PID on the torque error ([FFMPC] eq. 33;
-cpp/plant/flaws.cpp).
+cpp/plant/imperfect_robot.cpp).
 
     τ_m = τ_d − K_P (τ̂ − τ_d) − K_I ∫(τ̂ − τ_d) − K_D dτ̂/dt
 

@@ -1,16 +1,16 @@
 // Python face of the imperfect robot.
 #pragma once
 #include "bind_physics.hpp"
-#include "flaws.hpp"
+#include "imperfect_robot.hpp"
 
 namespace pliant::plant {
 
-class PyFlaws {
+class PyImperfectRobot {
  public:
-  explicit PyFlaws(Settings settings) : flaws_(std::move(settings)) {}
+  explicit PyImperfectRobot(Settings settings) : robot_(std::move(settings)) {}
 
-  int memory_size() const { return flaws_.memory_size(); }
-  int draws() const { return flaws_.draws(); }
+  int memory_size() const { return robot_.memory_size(); }
+  int draws() const { return robot_.draws(); }
   int reading_size() const { return 4 * settings().n + 6 * settings().frames; }
 
   void init(const Vector& memory, const ConstVector& held, const ConstVector& gain, const ConstVector& bias,
@@ -20,7 +20,7 @@ class PyFlaws {
     for (const auto* values : {&held, &gain, &bias, &sensor_gain, &sensor_offset})
       expect(values->size(), settings().n, "a value per joint");
     const Drawn drawn{gain.data(), bias.data(), sensor_gain.data(), sensor_offset.data()};
-    flaws_.init(memory.data(), held.data(), drawn, truth(now), draw.data(), reading(out.data()));
+    robot_.init(memory.data(), held.data(), drawn, truth(now), draw.data(), reading(out.data()));
     std::copy(held.data(), held.data() + settings().n, sent(out.data()));
   }
 
@@ -29,24 +29,24 @@ class PyFlaws {
     expect(memory.size(), memory_size(), "memory");
     expect(command.size(), settings().n, "command");
     expect(asked.size(), settings().n, "asked");
-    flaws_.ask(memory.data(), command.data(), asked.data());
-    flaws_.drive(memory.data(), asked.data());
+    robot_.ask(memory.data(), command.data(), asked.data());
+    robot_.drive(memory.data(), asked.data());
   }
   void gear(const Vector& memory, const ConstVector& draw, int index, const Vector& torque) const {
     expect(memory.size(), memory_size(), "memory");
     expect(draw.size(), draws(), "draw");
     expect(torque.size(), settings().n, "torque");
     if (index < 0 || index >= settings().inner) throw std::invalid_argument("there is no such step");
-    flaws_.gear(memory.data(), draw.data(), index, torque.data());
+    robot_.gear(memory.data(), draw.data(), index, torque.data());
   }
   void moved(const Vector& memory, const ConstVector& v) const {
     expect(memory.size(), memory_size(), "memory");
     expect(v.size(), settings().n, "v");
-    flaws_.moved(memory.data(), v.data());
+    robot_.moved(memory.data(), v.data());
   }
   void sense(const Vector& memory, const ConstVector& draw, const ConstVector& now, const Vector& out) const {
     check(memory, draw, out);
-    flaws_.sense(memory.data(), draw.data(), truth(now), reading(out.data()));
+    robot_.sense(memory.data(), draw.data(), truth(now), reading(out.data()));
   }
 
   // A whole period round a compiled robot. draws: (ticks, draws); out: reading, then the robot's own outcome. As
@@ -69,7 +69,7 @@ class PyFlaws {
   }
 
  private:
-  const Settings& settings() const { return flaws_.settings(); }
+  const Settings& settings() const { return robot_.settings(); }
   Reading reading(double* out) const {
     const int n = settings().n;
     return {out, out + n, out + 2 * n, out + 4 * n};
@@ -96,26 +96,26 @@ class PyFlaws {
     Doubles asked(size_t(s.n)), torque(size_t(s.n));
     std::uint64_t touching = 0;
     for (int tick = 0; tick < s.ticks; ++tick, draw += draws()) {
-      flaws_.ask(memory, command, asked.data());
+      robot_.ask(memory, command, asked.data());
       for (int i = 0; i < s.n; ++i) total[i] += asked[size_t(i)] / s.ticks;
-      flaws_.drive(memory, asked.data());
+      robot_.drive(memory, asked.data());
       for (int k = 0; k < s.inner; ++k) {
-        flaws_.gear(memory, draw, k, torque.data());
+        robot_.gear(memory, draw, k, torque.data());
         if (!physics.step(data, torque.data(), pushes, outcome, touching)) return -1;
-        flaws_.moved(memory, outcome.v);
+        robot_.moved(memory, outcome.v);
       }
-      flaws_.sense(memory, draw, now, reading(out));
+      robot_.sense(memory, draw, now, reading(out));
     }
     return static_cast<int64_t>(touching);
   }
 
-  Flaws flaws_;
+  ImperfectRobot robot_;
 };
 
-inline void init_flaws(PyFlaws* self, int n, int frames, int ticks, int inner, int under_way, Doubles limit,
-                       Doubles dry, Doubles viscous, Doubles noise, double friction_velocity, double kept, Doubles loop,
-                       Doubles ripple, std::vector<int> late, Doubles noise_q, Doubles noise_v, Doubles noise_torque,
-                       Doubles noise_wrench) {
+inline void init_imperfect_robot(PyImperfectRobot* self, int n, int frames, int ticks, int inner, int under_way,
+                                 Doubles limit, Doubles dry, Doubles viscous, Doubles noise, double friction_velocity,
+                                 double kept, Doubles loop, Doubles ripple, std::vector<int> late, Doubles noise_q,
+                                 Doubles noise_v, Doubles noise_torque, Doubles noise_wrench) {
   if (n < 1 || frames < 0 || ticks < 1 || inner < 1 || under_way < 0)
     throw std::invalid_argument("sizes of imperfections must not be negative");
   for (const auto* values : {&limit, &dry, &viscous, &noise, &noise_q, &noise_v, &noise_torque})
@@ -140,7 +140,7 @@ inline void init_flaws(PyFlaws* self, int n, int frames, int ticks, int inner, i
                std::move(noise_v),
                std::move(noise_torque),
                {noise_wrench[0], noise_wrench[1]}};
-  new (self) PyFlaws(std::move(s));
+  new (self) PyImperfectRobot(std::move(s));
 }
 
 }  // namespace pliant::plant

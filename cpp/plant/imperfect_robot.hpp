@@ -54,9 +54,9 @@ struct Drawn {
   const double *gain, *bias, *sensor_gain, *sensor_offset;
 };
 
-class Flaws {
+class ImperfectRobot {
  public:
-  explicit Flaws(Settings settings);
+  explicit ImperfectRobot(Settings settings);
 
   int memory_size() const { return size_; }
   // Standard normal numbers of one correction: (inner, n) of the gears, then q, v, torque (n each), wrenches.

@@ -1,4 +1,4 @@
-#include "flaws.hpp"
+#include "imperfect_robot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ void copy(const double* from, int count, double* to) { std::copy(from, from + co
 
 }  // namespace
 
-Flaws::Flaws(Settings settings) : settings_(std::move(settings)) {
+ImperfectRobot::ImperfectRobot(Settings settings) : settings_(std::move(settings)) {
   const int n = settings_.n, six = 6 * settings_.frames;
   const Sensors& s = settings_.sensors;
   for (int* row : {&gain_, &bias_, &sensor_gain_, &sensor_offset_, &filtered_, &integral_, &before_, &motor_,
@@ -34,8 +34,8 @@ Flaws::Flaws(Settings settings) : settings_(std::move(settings)) {
   take(forces_, 1 + s.late_force * six);
 }
 
-void Flaws::init(double* memory, const double* held, const Drawn& drawn, const True& now, const double* draw,
-                 Reading out) const {
+void ImperfectRobot::init(double* memory, const double* held, const Drawn& drawn, const True& now, const double* draw,
+                          Reading out) const {
   const int n = settings_.n, six = 6 * settings_.frames;
   const Sensors& s = settings_.sensors;
   std::fill(memory, memory + size_, 0.0);
@@ -63,7 +63,7 @@ void Flaws::init(double* memory, const double* held, const Drawn& drawn, const T
   copy(out.torque, n, at(memory, before_));
 }
 
-void Flaws::queue(double* memory, int offset, int late, int width, const double* value, double* out) const {
+void ImperfectRobot::queue(double* memory, int offset, int late, int width, const double* value, double* out) const {
   if (late == 0) {
     copy(value, width, out);
     return;
@@ -78,12 +78,12 @@ void Flaws::queue(double* memory, int offset, int late, int width, const double*
   memory[offset] = oldest + 1 == late ? 0 : oldest + 1;
 }
 
-void Flaws::ask(double* memory, const double* command, double* asked) const {
+void ImperfectRobot::ask(double* memory, const double* command, double* asked) const {
   queue(memory, commands_, settings_.under_way, settings_.n, command, asked);
   for (int i = 0; i < settings_.n; ++i) asked[i] = within(asked[i], settings_.gears.limit[i]);
 }
 
-void Flaws::drive(double* memory, const double* asked) const {
+void ImperfectRobot::drive(double* memory, const double* asked) const {
   const TorqueLoop& g = settings_.loop;
   const double* measured = at(memory, read_);
   double *integral = at(memory, integral_), *before = at(memory, before_), *motor = at(memory, motor_);
@@ -98,7 +98,7 @@ void Flaws::drive(double* memory, const double* asked) const {
   }
 }
 
-void Flaws::gear(double* memory, const double* draw, int index, double* torque) const {
+void ImperfectRobot::gear(double* memory, const double* draw, int index, double* torque) const {
   const Gears& g = settings_.gears;
   const int n = settings_.n;
   const double *gain = at(memory, gain_), *bias = at(memory, bias_), *v = at(memory, velocity_);
@@ -113,9 +113,9 @@ void Flaws::gear(double* memory, const double* draw, int index, double* torque) 
   }
 }
 
-void Flaws::moved(double* memory, const double* v) const { copy(v, settings_.n, at(memory, velocity_)); }
+void ImperfectRobot::moved(double* memory, const double* v) const { copy(v, settings_.n, at(memory, velocity_)); }
 
-void Flaws::rippled(double* memory, const double* wrenches, const double* v, double* out) const {
+void ImperfectRobot::rippled(double* memory, const double* wrenches, const double* v, double* out) const {
   const Ripple& r = settings_.ripple;
   double squares = 0;
   for (int i = 0; i < settings_.n; ++i) squares += v[i] * v[i];
@@ -126,7 +126,7 @@ void Flaws::rippled(double* memory, const double* wrenches, const double* v, dou
   for (int i = 0; i < 6 * settings_.frames; ++i) out[i] = wrenches[i] * (1.0 + share);
 }
 
-void Flaws::sense(double* memory, const double* draw, const True& now, Reading out) const {
+void ImperfectRobot::sense(double* memory, const double* draw, const True& now, Reading out) const {
   const int n = settings_.n;
   static thread_local std::vector<double> fresh;
   fresh.resize(size_t(2 * n + 6 * settings_.frames));
@@ -136,8 +136,8 @@ void Flaws::sense(double* memory, const double* draw, const True& now, Reading o
   read(memory, draw, fresh.data(), now.torque, out);
 }
 
-void Flaws::read(double* memory, const double* draw, const double* fresh, const double* true_torque,
-                 Reading out) const {
+void ImperfectRobot::read(double* memory, const double* draw, const double* fresh, const double* true_torque,
+                          Reading out) const {
   const Sensors& s = settings_.sensors;
   const int n = settings_.n, six = 6 * settings_.frames;
   static thread_local std::vector<double> old;

@@ -1,6 +1,6 @@
 // The imperfect robot: nothing is written beyond its memory, known answers of delay and clamp, a period that takes
 // nothing from the heap.
-#include "../flaws.hpp"
+#include "../imperfect_robot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,26 +32,26 @@ struct Run {
   std::vector<double> memory, out, asked, torque;
 
   Run(const Settings& s, double command, int count) {
-    const Flaws flaws(s);
-    memory.resize(size_t(flaws.memory_size()));
+    const ImperfectRobot robot(s);
+    memory.resize(size_t(robot.memory_size()));
     out.resize(size_t(3 * n + six));
     asked.resize(n);
     torque.resize(n);
-    const std::vector<double> draws(size_t(flaws.draws())), wanted(n, command);
+    const std::vector<double> draws(size_t(robot.draws())), wanted(n, command);
     std::vector<double> q(n), wrenches(six);
     const Reading reading = {out.data(), &out[n], &out[2 * n], &out[3 * n]};
     const True first = {q.data(), zeros.data(), zeros.data(), wrenches.data()};
     const Drawn drawn = {ones.data(), zeros.data(), ones.data(), zeros.data()};
-    flaws.init(memory.data(), zeros.data(), drawn, first, draws.data(), reading);
+    robot.init(memory.data(), zeros.data(), drawn, first, draws.data(), reading);
     const int before = pliant::testing::allocations;
     for (int k = 1; k <= count; ++k) {
-      flaws.ask(memory.data(), wanted.data(), asked.data());
-      flaws.drive(memory.data(), asked.data());
-      for (int i = 0; i < s.inner; ++i) flaws.gear(memory.data(), draws.data(), i, torque.data());
-      flaws.moved(memory.data(), zeros.data());
+      robot.ask(memory.data(), wanted.data(), asked.data());
+      robot.drive(memory.data(), asked.data());
+      for (int i = 0; i < s.inner; ++i) robot.gear(memory.data(), draws.data(), i, torque.data());
+      robot.moved(memory.data(), zeros.data());
       std::fill(q.begin(), q.end(), k);
       std::fill(wrenches.begin(), wrenches.end(), 2 * k);
-      flaws.sense(memory.data(), draws.data(), {q.data(), zeros.data(), torque.data(), wrenches.data()}, reading);
+      robot.sense(memory.data(), draws.data(), {q.data(), zeros.data(), torque.data(), wrenches.data()}, reading);
     }
     used = pliant::testing::allocations - before;
   }

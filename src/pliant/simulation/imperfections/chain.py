@@ -1,4 +1,4 @@
-"""The compiled chain of an imperfect robot (cpp/plant/flaws.cpp), made from its configuration."""
+"""The compiled chain of an imperfect robot (cpp/plant/imperfect_robot.cpp), made from its configuration."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant._plant import Flaws
+from pliant._plant import ImperfectRobot
 from pliant.sampling import kept_share, whole_periods
 from pliant.simulation.imperfections.config import Imperfections
 from pliant.simulation.imperfections.draws import Draws
@@ -34,7 +34,7 @@ class Sizes:
     """s of one of them"""
 
 
-def flaws_of(config: Imperfections, sizes: Sizes) -> Flaws:
+def chain_of(config: Imperfections, sizes: Sizes) -> ImperfectRobot:
     """The chain.
 
     Raises:
@@ -48,7 +48,7 @@ def flaws_of(config: Imperfections, sizes: Sizes) -> Flaws:
     late_force = whole_periods(sensing.delay_force, tick, "delay of the force signal")
     peak = np.inf if gears.peak_torque is None else gears.peak_torque
     noise = _noise(config, n)
-    return Flaws(
+    return ImperfectRobot(
         n=n,
         frames=len(sizes.sensors),
         ticks=sizes.ticks,
