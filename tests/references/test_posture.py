@@ -7,15 +7,21 @@ import pinocchio as pin
 import pytest
 
 from pliant.errors import ConfigError, RobotError
-from pliant.references.postures.inverse_kinematics import Target, joint_box
-from pliant.references.postures.posture import METHODS, PostureOptions, UnreachableError, solve_posture
+from pliant.references.postures.inverse_kinematics import JointBox, PoseSolver, Target, joint_box
+from pliant.references.postures.posture import (
+    METHODS,
+    PostureOptions,
+    PosturePath,
+    UnreachableError,
+    solve_posture,
+)
 from pliant.references.postures.posture_source import PostureSource, posture_source
 from pliant.references.source import FrameMotion
 from pliant.references.trajectories.shapes import lemniscate, sine_line
 from pliant.references.trajectories.trajectory import Hold
 from pliant.robot import Robot
 from pliant.signals import Estimate
-from pliant.spatial import frame_with_z_along, log3
+from pliant.spatial import Array, frame_with_z_along, log3
 
 ALONG_Y = frame_with_z_along((0.0, -1.0, 0.0))
 
@@ -90,6 +96,41 @@ def test_redundancy_drifts_to_the_nominal_posture(robot: Robot) -> None:
     path = solve_posture(robot, hold, 6.0, nominal)
     distance = np.abs((path.postures - nominal) @ self_motion)
     assert distance[-1] < 0.2 * max(distance[0], 0.1)
+
+
+def _solves(monkeypatch: pytest.MonkeyPatch, robot: Robot, motion: FrameMotion) -> tuple[int, PosturePath]:
+    """How many poses are solved along 80 s in samples of 0.2 s, and the path."""
+    count, make = 0, METHODS["mink"]
+
+    def counting(robot: Robot, frame: str) -> PoseSolver:
+        solver = make(robot, frame)
+        solve = solver.solve
+
+        def counted(guess: Array, prior: Array, box: JointBox, target: Target) -> Array:
+            nonlocal count
+            count += 1
+            return solve(guess, prior, box, target)
+
+        monkeypatch.setattr(solver, "solve", counted)
+        return solver
+
+    monkeypatch.setitem(METHODS, "mink", counting)
+    path = solve_posture(robot, motion, 80.0, robot.home, PostureOptions(period=0.2))
+    monkeypatch.setitem(METHODS, "mink", make)
+    return count, path
+
+
+def test_a_pose_that_is_held_is_solved_until_the_posture_rests(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Control: a motion that goes on is solved at every sample, and so is a hold where nothing counts as rest."""
+    held = FrameMotion("flange", Hold((0.0, -0.6, 0.5)), ALONG_Y)
+    moving = FrameMotion("flange", sine_line(0.1, 0.01), ALONG_Y)
+    (few, short), (many, _) = (_solves(monkeypatch, robot, motion) for motion in (held, moving))
+    monkeypatch.setattr("pliant.references.postures.posture._AT_REST", -1.0)
+    every, whole = _solves(monkeypatch, robot, held)
+    samples = len(short.times) - 1
+    assert few < 0.75 * samples
+    assert min(many, every) >= samples
+    np.testing.assert_allclose(short.postures, whole.postures, rtol=0.0, atol=1e-9)
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -15,10 +15,15 @@ from pliant.experiments.base import Result
 from pliant.experiments.summarise import summarised
 from pliant.references.postures.posture import UnreachableError
 from pliant.studies.stack import STUDY
+from pliant.studies.stack import from_task as cases_of_files
 from pliant.studies.stack.build import build
 from pliant.studies.stack.cases import CASES
 from pliant.studies.stack.config import StackCaseConfig
+from pliant.studies.stack.from_task import from_task, targets_of
 from pliant.studies.stack.measure import tracking_rmse
+from pliant.tasks import load_task
+from pliant.tasks.draws import Uniform
+from pliant.tasks.phase import Track
 from pliant.telemetry import Log, Metric, Recorder
 
 pytestmark = pytest.mark.study
@@ -41,6 +46,27 @@ def metrics_of(case: str, **changes: Any) -> dict[str, Metric]:
     config, log, outcome = run(case, tuple(changes.items()))
     assert outcome.failure is None
     return {metric.name: metric for metric in STUDY.judged(config, log)}
+
+
+def test_cases_are_the_task_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a file changes is changed in its case; parameters that have no name are refused."""
+    task = load_task("figure8-hardware", "figure8-pushed")
+    path = task.phase[0].tracks["flange"]
+    assert isinstance(path, Track)
+    monkeypatch.setattr(cases_of_files, "load_task", lambda file, case: task)
+    assert from_task("figure8-hardware", "figure8-pushed") == STUDY.case("figure8-pushed")
+    slower = task.phase[0].model_copy(update={"tracks": {"flange": path.model_copy(update={"period": 5.0})}})
+    pushes = task.disturbance[0].model_copy(update={"push": Uniform(uniform=(1.0, 2.0)), "frame": "flange"})
+    changes = {"phase": (slower,), "disturbance": (pushes,), "compensates": "gravity", "accept": {"rmse_z": 7.0}}
+    task = task.model_copy(update=changes)
+    found = from_task("figure8-hardware", "figure8-pushed")
+    assert found.pushes is not None
+    assert (found.path.period, found.pushes.frame, found.pushes.force) == (5.0, "flange", (1.0, 2.0))
+    assert (found.joints.compensation, targets_of("figure8-hardware")) == ("gravity", {"RMSE z": 7.0})
+    odd = {"stack": {"tasks": {"ee": {"translation": {"stiffness": 1234.0}}}}}
+    task = task.model_copy(update={"control": odd})
+    with pytest.raises(ConfigError, match="those of no preset: stiff, soft"):
+        from_task("figure8-hardware")
 
 
 @pytest.mark.parametrize("case", ["figure8-plain", "figure8-gazebo", "figure8-hardware", "line-hardware"])

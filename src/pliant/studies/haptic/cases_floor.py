@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from pliant.experiments.case import Case, Row, once
 from pliant.studies.haptic.config import Check
 from pliant.studies.haptic.from_task import from_task
-from pliant.studies.haptic.rows import plain
+from pliant.studies.haptic.rows import PRINTED, PROFILE_PRINTED, plain
 
 FLOOR = from_task(
     "floor",
@@ -30,4 +31,4 @@ FLOOR_NOISE = from_task(
     ),
 )
 
-FLOOR_CASES = tuple(plain(config) for config in (FLOOR, FLOOR_NOISE))
+FLOOR_CASES = (Case(FLOOR, (Row(), PRINTED, PROFILE_PRINTED), once), plain(FLOOR_NOISE))

@@ -8,6 +8,8 @@ from pliant.experiments.case import Case, Row, once, seeded
 from pliant.studies.haptic.config import HapticCaseConfig
 
 PRINTED = Row(controller="haptic-paper")
+PROFILE_PRINTED = Row("profile as printed", changes={"impedance": {"profile": "tanh-printed"}}, shown=False)
+"""[HapFIC] eq. 4 with S = 0.1353, under pliant's law"""
 
 
 def plain(config: HapticCaseConfig, **more: Any) -> Case[HapticCaseConfig]:

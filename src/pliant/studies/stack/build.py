@@ -19,14 +19,13 @@ from pliant.robot import Robot
 from pliant.simulation import ForceSensor, JointEffects, MujocoPlant, Push, Scene, Surface, wall
 from pliant.simulation.seeding import generator
 from pliant.studies.stack.config import GainChanges, StackCaseConfig, StackPath
+from pliant.studies.stack.paper_task import TOUCH_RADIUS
 from pliant.studies.stack.placement import Placement, placed
 from pliant.tasks.draws import LogUniform, Uniform
 from pliant.tasks.events import Event, Scaled
 from pliant.tasks.parts import Disturbance
 from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
-
-TOUCH_RADIUS = 0.01  # m of the sphere with which the tool touches the wall
 
 
 def build(config: StackCaseConfig) -> Experiment:

@@ -1,7 +1,7 @@
 """Typed configuration of the stack study.
 
-Source of the task: [Stack] Tiseo et al. 2020, sec. III and Table I. What the paper leaves open (period, ramp, wall,
-pushes) is here, with the value chosen.
+Source of the task: [Stack] Tiseo et al. 2020, sec. III and Table I. Numbers, and what the paper leaves open (period,
+ramp, wall, pushes), stand in the task files of the catalogue; defaults are read from there.
 """
 
 from __future__ import annotations
@@ -19,12 +19,14 @@ from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig
 from pliant.quantity import in_order, quantity
 from pliant.robot import Robot
+from pliant.studies.stack.paper_task import FIGURE8, LINE, PLAIN, PUSHED, RETUNED, WALL, wall_of
 from pliant.wiring.registry import find_controller
 from pliant.wiring.wire import parameters_for
 
 PathKind = Literal["figure8", "line", "stretch", "hold"]
 
 
+_WALL = wall_of(WALL)
 _Force = Annotated[float, Field(ge=0.0, le=1e4)]  # N
 _Time = Annotated[float, Field(ge=1e-3, le=1e4)]  # s
 _Factor = Annotated[float, Field(ge=1e-3, le=1e3)]
@@ -39,10 +41,10 @@ class StackPath(Config):
         default="figure8",
         description="figure8: x 0.1 m, z 0.2 m; line: along x; stretch: along −y until the elbow is straight; hold",
     )
-    period: float = quantity(4.0, "s", "of the figure-8", ge=0.01, le=1e4)
-    amplitude: float = quantity(0.5, "m", "of the line", gt=0.0, le=10.0)
-    peak_speed: float = quantity(0.7, "m/s", "of the line", gt=0.0, le=100.0)
-    ramp: float = quantity(2.0, "s", "time in which the motion starts from rest", ge=0.0, le=1e4)
+    period: float = quantity(FIGURE8.period, "s", "of the figure-8", ge=0.01, le=1e4)
+    amplitude: float = quantity(LINE.size[0], "m", "of the line", gt=0.0, le=10.0)
+    peak_speed: float = quantity(LINE.peak_speed, "m/s", "of the line", gt=0.0, le=100.0)
+    ramp: float = quantity(FIGURE8.ramp, "s", "time in which the motion starts from rest", ge=0.0, le=1e4)
     method: Literal["mink", "aico"] = Field(
         default="mink",
         description="inverse kinematics for the posture: quadratic programs, or one-step approximate inference",
@@ -65,28 +67,28 @@ class Joints(Config):
 class Wall(Config):
     """A wall in the tool's path that is unknown to the controller."""
 
-    x: float = quantity(0.07, "m", "where it stops the tool", ge=-10.0, le=10.0)
-    stiffness: float = quantity(1e4, "N/m", "of the contact", gt=0.0, le=1e8)
-    damping: float = quantity(1e2, "N s/m", "of the contact", ge=0.0, le=1e8)
-    friction: float = quantity(0.1, "1", "Coulomb coefficient", ge=0.0, le=10.0)
+    x: float = quantity(_WALL["x"], "m", "where it stops the tool", ge=-10.0, le=10.0)
+    stiffness: float = quantity(_WALL["stiffness"], "N/m", "of the contact", gt=0.0, le=1e8)
+    damping: float = quantity(_WALL["damping"], "N s/m", "of the contact", ge=0.0, le=1e8)
+    friction: float = quantity(_WALL["friction"], "1", "Coulomb coefficient", ge=0.0, le=10.0)
 
 
 class RandomPushes(Config):
     """Random pushes on a frame, one after the other."""
 
-    frame: str = Field(default="elbow", description="that is pushed")
-    force: Annotated[tuple[_Force, _Force], AfterValidator(in_order)] = quantity((10.0, 30.0), "N", "least and most")
-    duration: Span = quantity((0.2, 0.6), "s", "of a push, least and most")
-    gap: Span = quantity((0.1, 0.4), "s", "between two pushes, least and most")
+    frame: str = Field(default=PUSHED["frame"], description="that is pushed")
+    force: Annotated[tuple[_Force, _Force], AfterValidator(in_order)] = quantity(PUSHED["force"], "N", "least and most")
+    duration: Span = quantity(PUSHED["duration"], "s", "of a push, least and most")
+    gap: Span = quantity(PUSHED["gap"], "s", "between two pushes, least and most")
     end: float | None = quantity(None, "s", "from which on no push begins; none: the end of the run", gt=0.0)
 
 
 class GainChanges(Config):
     """Random changes of every gain and force bound while the robot moves."""
 
-    rate: float = quantity(4.0, "Hz", "changes per second", gt=0.0, le=1e3)
+    rate: float = quantity(RETUNED["rate"], "Hz", "changes per second", gt=0.0, le=1e3)
     factor: Annotated[tuple[_Factor, _Factor], AfterValidator(in_order)] = quantity(
-        (0.1, 2.0), "1", "range of the factor on K_0 and F_max"
+        RETUNED["factor"], "1", "range of the factor on K_0 and F_max"
     )
     ranges: bool = Field(default=False, description="x_0 and x_b change as well, by factors of the same range")
 
@@ -110,10 +112,12 @@ class StackCaseConfig(CaseConfig):
     """One run of the stack of passive task-space controllers."""
 
     controller: str = Field(default="stack", description="name of the controller; see `pliant list controllers`")
-    robot: str = Field(default="lwr4", description="catalogue name, or path of a URDF or MJCF file")
-    duration: float = quantity(12.0, "s", "length of the run", gt=0.0)
-    period: float = quantity(1e-3, "s", "control period, a whole multiple of the physics step", gt=0.0)
-    physics_step: float = quantity(5e-4, "s", "of the simulation", gt=0.0)
+    robot: str = Field(default=PLAIN.robot, description="catalogue name, or path of a URDF or MJCF file")
+    duration: float = quantity(PLAIN.phase[0].longest, "s", "length of the run", gt=0.0)
+    period: float = quantity(
+        PLAIN.simulation.period, "s", "control period, a whole multiple of the physics step", gt=0.0
+    )
+    physics_step: float = quantity(PLAIN.simulation.physics_step, "s", "of the simulation", gt=0.0)
     path: StackPath = StackPath()
     joints: Joints = Joints()
     preset: Literal["stiff", "soft", "table-1-simulation", "table-1-robot"] = Field(

@@ -24,12 +24,10 @@ from pliant.robot import Robot
 from pliant.robots.chain import Arm, arm_of
 from pliant.spatial import Array, frame_with_z_along
 from pliant.studies.stack.config import StackPath
+from pliant.studies.stack.paper_task import CENTRE, FIGURE8, NOMINAL, STRAIGHT, STRETCH, Z_AXIS
 
 _REACH = 0.868  # m from the shoulder to the flange of the paper's arm
 _SHOULDER = np.array([0.0, 0.0, 0.31])  # m
-_CENTRE = np.array([0.0, -0.6, 0.5])  # m, [Stack] sec. III-A
-_STRAIGHT = np.array([0.0, -0.75, 0.31])  # m; at shoulder height the arm is straight at 0.868 m
-_NOMINAL = (np.pi / 2, 0.75, 0.0, -1.35, 0.0, -0.53, 0.0)  # rad, elbow up, tool along −y
 _SMALLER = (1.0, 0.5, 0.25)
 
 
@@ -61,7 +59,7 @@ class Placement:
     @property
     def centre(self) -> Array:
         """(3,) m, middle of the figure-8 and of the line."""
-        return self.point(_CENTRE)
+        return self.point(CENTRE)
 
 
 def placed(robot: Robot, path: StackPath, frames: tuple[str, str], duration: float) -> tuple[Placement, PostureSource]:
@@ -102,12 +100,13 @@ def motion(path: StackPath, frame: str, place: Placement) -> FrameMotion:
     """What the tool does."""
     across, up, scale = place.axes[:, 0], place.axes[:, 2], place.scale
     if path.kind == "figure8":
-        position = lemniscate(path.period, place.centre, 0.1 * scale, 0.2 * scale, across, up)
+        wide, high = (scale * size for size in FIGURE8.size)
+        position = lemniscate(path.period, place.centre, wide, high, across, up)
     elif path.kind == "line":
         position = sine_line(scale * path.amplitude, scale * path.peak_speed, place.centre, across)
     elif path.kind == "stretch":
-        # the reference goes 10 mm beyond the straight arm
-        position = sine_line(scale * 0.128, scale * 0.2, place.point(_STRAIGHT), -place.axes[:, 1])
+        length, speed = scale * STRETCH.size[0], scale * STRETCH.peak_speed
+        position = sine_line(length, speed, place.point(STRAIGHT), -place.axes[:, 1])
     else:
         position = Hold(place.centre)
     return FrameMotion(frame, position, place.rotation).eased(path.ramp)
@@ -135,13 +134,13 @@ def _in_front(robot: Robot, second_joint: int, scale: float) -> Placement:
     pin.forwardKinematics(robot.model, data, robot.home)
     shoulder = np.array(data.oMi[second_joint].translation)
     offset = np.round(shoulder - scale * _SHOULDER, 9) + 0.0
-    nominal = np.array(_NOMINAL) if robot.n == len(_NOMINAL) else None
+    nominal = NOMINAL if robot.n == len(NOMINAL) else None
     as_printed = scale == 1.0 and not offset.any()
     told = (
         f"the paper's path is scaled by {scale:.3f} (the robot's reach over {_REACH} m), seen from the shoulder at"
         f" {_written(shoulder)} m"
     )
-    R = frame_with_z_along((0.0, -1.0, 0.0))
+    R = frame_with_z_along(Z_AXIS)
     return Placement(scale, np.eye(3), offset, R, nominal, "" if as_printed else told)
 
 
@@ -158,7 +157,7 @@ def _at_home(robot: Robot, tool: str, scale: float) -> Placement:
         f"the arm cannot follow the path in front of its shoulder: it is scaled by {scale:.3f}, centred at its tool at"
         f" home, {_written(position)} m, and lies across the tool's z axis"
     )
-    return Placement(scale, axes, position - axes @ (scale * _CENTRE), rotation, robot.home, told)
+    return Placement(scale, axes, position - axes @ (scale * CENTRE), rotation, robot.home, told)
 
 
 def _written(point: Array) -> str:
