@@ -1,4 +1,4 @@
-"""`pliant list`: robots, controllers and studies."""
+"""`pliant list`: robots, controllers, studies and tasks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from pliant.cli.one_controller import print_controller
 from pliant.errors import ConfigError, options
 from pliant.experiments.registry import get_study, study_names
 from pliant.robots import CATALOGUE, is_available
+from pliant.tasks import Task
 from pliant.tasks.files import catalogue, load_task, read_task
+from pliant.tasks.phase import Track
 from pliant.wiring.registry import broken_controllers, controllers, find_controller
 
 
@@ -76,9 +78,19 @@ def _tasks() -> Table:
         found = read_task(name)
         for variant, task in {name: found.task, **{key: load_task(name, key) for key in found.variants}}.items():
             label = name if variant == name else f"  --case {variant}"
-            table.add_row(label, task.robot, task.surface.shape, task.path.pattern, task.description)
+            table.add_row(label, task.robot, *_where_and_what(task), task.description)
     table.add_row("FILE.toml", "", "", "", "yours; `pliant new task raster` writes one to begin with")
     return table
+
+
+def _where_and_what(task: Task) -> tuple[str, str]:
+    """What is touched, and the path on it; of a list of phases the things that stand around, and what moves."""
+    if not task.phase:
+        return task.surface.shape, task.path.pattern
+    things = ", ".join(dict.fromkeys(thing.shape for thing in task.scene.values())) or "nothing"
+    tracks = [track.shape for track in task.phase[0].tracks.values() if isinstance(track, Track)]
+    count = len(task.phase)
+    return things, tracks[0] if tracks else f"{count} phase{'s' if count > 1 else ''}"
 
 
 _LISTS: Mapping[str, Callable[[], Table]] = {

@@ -183,8 +183,7 @@ def _follow(
     worst = solver.shortfall(q, held)
     for index in range(1, times.shape[0]):
         target = _target(motion, float(times[index]), chosen)
-        same = np.array_equal(target.position, held.position) and np.array_equal(target.rotation, held.rotation)
-        held = target
+        same, held = _same(target, held), target
         if same and rests:
             postures[index] = q
             continue
@@ -204,6 +203,14 @@ def _follow(
 def _target(motion: FrameMotion, time: float, chosen: PostureOptions) -> Target:
     task = motion.at(time)
     return Target(task.position, task.rotation, chosen.spins)
+
+
+def _same(one: Target, other: Target) -> bool:
+    if one.rotation is None or other.rotation is None:
+        turned = one.rotation is other.rotation
+    else:
+        turned = np.array_equal(one.rotation, other.rotation)
+    return turned and np.array_equal(one.position, other.position)
 
 
 def _complaint(solver: PoseSolver, q: Array, target: Target, time: float, hurried: bool = False) -> str:
