@@ -8,6 +8,7 @@ from pliant.entries import ControllerEntry
 from pliant.errors import ConfigError
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.planners.attractor_planner import AttractorPlanner
+from pliant.references.planners.curves import Planner
 from pliant.references.planners.harmonic_attractor import AttractorSettings
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
@@ -23,7 +24,7 @@ def target_planner(
     robot: Robot,
     frame: str,
     lookahead: Lookahead | None = None,
-) -> ReferenceSource[Any]:
+) -> Planner:
     """Motion through targets.
 
     Args:

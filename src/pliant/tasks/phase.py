@@ -109,7 +109,7 @@ class Phase(Config):
     modes: tuple[Mode, Mode, Mode, Mode, Mode, Mode] | None = Field(
         default=None, description="of each axis of `frame`, three of motion and three about them; none: as wrench says"
     )
-    motion: PhaseMotion | None = Field(default=None, description="curve that begins at the target, in a timed list")
+    motion: PhaseMotion | None = Field(default=None, description="curve that begins at the target")
     limit: MotionLimit | None = Field(default=None, description="of the motion along force axes")
     press: float | None = quantity(
         None,

@@ -1,4 +1,4 @@
-"""What phases of a timed list say beside their targets: curves about them, and wrenches that change."""
+"""What phases say beside their targets: curves about them, and wrenches that change."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ class CurveConfig(Config):
 
 
 class PhaseMotion(CurveConfig):
-    """A curve that begins at the target of its phase, of a timed list."""
+    """A curve that begins at the target of its phase."""
 
     shape: Literal["lemniscate", "line", "circle", "hold", "stop"] = Field(
         description="lemniscate: across·sin(4πt/T) and up·sin(2πt/T); line: to and fro; circle: its middle lies across"
         " from the target, and it sets out upwards; hold: no motion; stop: the motion of the phase before comes to rest"
-        " within `ramp`"
+        " within `ramp`, in a timed list"
     )
 
     @model_validator(mode="after")

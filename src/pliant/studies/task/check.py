@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from pliant.studies.task.build_list import listed
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.drawn_case import as_drawn
 from pliant.studies.task.geometry import force_of, laid_out
-from pliant.studies.task.list_motion import Listed, planner_in_time
+from pliant.studies.task.list_motion import Listed, planner_in_time, with_curves
 from pliant.studies.task.timed import timed_source
 from pliant.studies.task.world import true_surface
 
@@ -82,8 +83,9 @@ def _course(case: TaskCase) -> Course:
     planner, nothing = planner_in_time(case, made), np.zeros(made.robot.n)
     estimate = Estimate(0.0, made.start, nothing, nothing, nothing)
     goal, _ = planner.inner.step(estimate, planner.inner.init(estimate))
-    _, state = planner.step(estimate, planner.init(estimate))
-    return course_through(planner.foreseen(goal, state, times))
+    moving: Any = with_curves(case, made, planner)
+    _, state = moving.step(estimate, moving.init(estimate))
+    return course_through(moving.foreseen(goal, state, times))
 
 
 def _timed_course(case: TaskCase, made: Listed, times: Array) -> Course:

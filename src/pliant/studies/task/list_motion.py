@@ -11,6 +11,7 @@ from pliant.experiments.drawn_events import tunings_drawn
 from pliant.experiments.target_planner import target_planner
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Foreseen
+from pliant.references.planners.curves import CurvedTargets, Planner
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
 from pliant.references.postures.posture_source import PostureSource
@@ -20,6 +21,7 @@ from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
+from pliant.studies.task.curves import stage_curves
 from pliant.studies.task.landing import GentleLanding, landed
 from pliant.studies.task.listed import changes_of, frame_of, longest_of, stages_of
 from pliant.studies.task.timed import timed_source
@@ -51,7 +53,15 @@ def source_of(case: TaskCase, made: Listed, lookahead: Lookahead | None) -> Refe
         return Retuned(followed, changes) if changes else followed
     if case.timed:
         return timed_source(case, made.robot, made.start, lookahead)
-    return target_planner(case.planner, case.entry, _wanted(case, made), made.robot, frame_of(case), lookahead)
+    planner = target_planner(case.planner, case.entry, _wanted(case, made), made.robot, frame_of(case), lookahead)
+    return with_curves(case, made, planner)
+
+
+def with_curves(case: TaskCase, made: Listed, planner: Planner) -> Planner | CurvedTargets:
+    """A planner with the curves that phases ask for beside their targets. Raises ConfigError as `stage_curves`."""
+    rotation = made.robot.placement(made.start, frame_of(case))[1]
+    curves = stage_curves(case, stages_of(case, made.robot, rotation))
+    return CurvedTargets(planner, curves) if curves else planner
 
 
 def planner_in_time(case: TaskCase, made: Listed) -> HarmonicPlanner:

@@ -135,7 +135,7 @@ def refuse_untimed(case: TaskCase) -> None:
             raise ConfigError("a timed list has no events and no impedance of its own: leave out timed = true")
         told = ("modes", "limit", "press", "touch")
     else:
-        told = ("profile", "motion", "begin", "via", "arrive")
+        told = ("profile", "begin", "via", "arrive")
     for name, phase in zip(case.phase_names(), case.phase, strict=True):
         said = next((key for key in told if getattr(phase, key) not in (None, ())), None)
         if said is not None and case.timed:
@@ -149,7 +149,13 @@ def refuse_untimed(case: TaskCase) -> None:
             raise ConfigError(f"phase {name!r}: until = {{ any = [{{ contact = true }}, {{ timeout = … }}] }} alone")
         if case.timed and _waits(phase) and phase.otherwise == "next":
             raise ConfigError(f"phase {name!r}: in a timed list contact that is not felt in time is a failure")
-        if phase.motion is not None and phase.motion.shape == "stop" and (name == case.phase_names()[0]):
+        stops = phase.motion is not None and phase.motion.shape == "stop"
+        if stops and not case.timed:
+            raise ConfigError(
+                f"phase {name!r}: motion.shape = 'stop' is for a timed list: here a curve fades within its `ramp`"
+                " when its phase ends"
+            )
+        if stops and name == case.phase_names()[0]:
             raise ConfigError(f"phase {name!r}: there is no motion before it that could stop")
 
 
