@@ -177,7 +177,7 @@ def test_a_timeout_that_fails_is_a_failed_run(tmp_path: Path) -> None:
     [
         (INSERTION.replace('modes = ["motion", "motion", "force"', 'modes = ["motion", "motion", "motion"').replace(
             '"force", "force", "motion"]', '"motion", "motion", "motion"]'), r"axes whose mode is not force: z"),
-        (INSERTION + 'motion = { shape = "line" }\n', r"motion is for a timed list"),
+        (INSERTION + 'motion = { shape = "stop" }\n', r"'stop' is for a timed list"),
         (INSERTION.replace('frame = "hole"', 'frame = "hull"'), r"a thing of the scene or a pose; valid: 'hole'"),
         (PHASES + FIRST + 'touch = "flor"\nduration = 1.0\n', r"touch names no thing.*did you mean 'floor'"),
         (PHASES + FIRST + "until = { force = 3.0 }\n", r"'down' may never end"),

@@ -287,7 +287,10 @@ def test_a_timed_run_stops_at_twice_the_speed_limits() -> None:
         (TIMED + DOWN + "[[event]]\nchange = { wrench = [0, 0, 1] }\n", r"a timed list has no events"),
         (TIMED.replace("timed = true", "") + DOWN + PRESS, r"frame is world, a thing of the scene or a pose"),
         (TIMED.replace("timed = true", "") + DOWN + "arrive = 0.2\n", r"'down': arrive is for a timed list"),
-        (TIMED.replace("timed = true", "") + DOWN + 'motion = { shape = "line" }\n', r"motion is for a timed list"),
+        (
+            TIMED.replace("timed = true", "") + DOWN + "profile = { times = [0.0], wrench = [[0.0, 0.0, 5.0]] }\n",
+            r"profile is for a timed list",
+        ),
         (TIMED + DOWN + 'motion = { shape = "stop" }\n', r"no motion before it that could stop"),
         (
             TIMED + DOWN + 'motion = { shape = "circle", across = [1, 0, 0], up = [1, 1, 0] }\n',
