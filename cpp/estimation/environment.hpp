@@ -2,9 +2,11 @@
 #pragma once
 #include "environment_fit.hpp"
 #include "surface.hpp"
-#include "tree.hpp"
+#include "../shared/tree.hpp"
 
 namespace pliant::estimation {
+
+using namespace bodies;
 
 class EnvironmentStage final : public Stage {
  public:

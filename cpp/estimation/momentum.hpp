@@ -4,9 +4,11 @@
 
 #include "stage.hpp"
 #include "surface.hpp"
-#include "tree.hpp"
+#include "../shared/tree.hpp"
 
 namespace pliant::estimation {
+
+using namespace bodies;
 
 struct ObserverSettings {
   double gain = 0;            // [rad/s]

@@ -5,9 +5,11 @@
 
 #include "stage.hpp"
 #include "tare.hpp"
-#include "tree.hpp"
+#include "../shared/tree.hpp"
 
 namespace pliant::estimation {
+
+using namespace bodies;
 
 struct WrenchSettings {
   double velocity_gain = 1;

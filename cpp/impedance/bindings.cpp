@@ -1,83 +1,15 @@
-// Python face of the impedance core. Arrays are checked here; the core trusts them.
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
+// Python face of the impedance core.
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <string>
 
+#include "bind_robot.hpp"
 #include "drive.hpp"
-#include "stack.hpp"
 
-namespace nb = nanobind;
 using namespace pliant::impedance;
 
 namespace {
-
-using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using ConstVector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Table = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using ConstTable = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using ConstMatrix = nb::ndarray<const double, nb::ndim<2>, nb::device::cpu>;
-
-[[noreturn]] void reject(const std::string& message) { throw nb::value_error(message.c_str()); }
-
-void expect(std::size_t got, int wanted, const char* name) {
-  if (got != static_cast<std::size_t>(wanted)) {
-    reject(std::string(name) + " must have " + std::to_string(wanted) + " entries, got " + std::to_string(got));
-  }
-}
-
-bool finite(const double* x, int size) {
-  double sum = 0.0;
-  for (int i = 0; i < size; ++i) sum += x[i] * 0.0;  // 0 unless an entry is infinite or not a number
-  return sum == 0.0;
-}
-
-void read_pose(nb::handle position, nb::handle rotation, bool needs_rotation, Pose& pose) {
-  const auto p = nb::cast<ConstVector>(position);
-  expect(p.shape(0), 3, "a position");
-  std::copy(p.data(), p.data() + 3, pose.position);
-  pose.oriented = needs_rotation && !rotation.is_none();
-  if (!pose.oriented) return;
-  const auto R = nb::cast<ConstMatrix>(rotation);
-  if (R.shape(0) != 3 || R.shape(1) != 3) reject("a rotation must have shape (3, 3)");
-  const auto row = R.stride(0), column = R.stride(1);
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) pose.rotation[3 * i + j] = R.data()[i * row + j * column];
-  }
-}
-
-bool finite(const Pose& pose) { return finite(pose.position, 3) && (!pose.oriented || finite(pose.rotation, 9)); }
-
-// 0, or which input is not finite: 1 for q, 100 + i for the frame of task i, 200 + i for its reference.
-int read_tasks(Stack& stack, nb::tuple actual, nb::tuple desired) {
-  expect(actual.size(), 2 * stack.tasks(), "actual");
-  expect(desired.size(), 2 * stack.tasks(), "desired");
-  for (int i = 0; i < stack.tasks(); ++i) {
-    TaskInput& in = stack.input()[i];
-    in.retune = in.axes = nullptr;
-    const bool six = stack.axes(i) == 6;
-    read_pose(actual[2 * i], actual[2 * i + 1], six, in.actual);
-    read_pose(desired[2 * i], desired[2 * i + 1], six, in.desired);
-    if (!finite(in.actual)) return 100 + i;
-    if (!finite(in.desired)) return 200 + i;
-  }
-  return 0;
-}
-
-// Axes of each task, row-major; `kept` holds them during the step.
-void read_axes(Stack& stack, nb::tuple axes, std::vector<double>& kept) {
-  expect(axes.size(), stack.tasks(), "axes");
-  kept.resize(9 * stack.tasks());
-  for (int i = 0; i < stack.tasks(); ++i) {
-    if (axes[i].is_none()) continue;
-    const auto R = nb::cast<ConstMatrix>(axes[i]);
-    if (R.shape(0) != 3 || R.shape(1) != 3) reject("axes must have shape (3, 3)");
-    for (int j = 0; j < 9; ++j) kept[9 * i + j] = R.data()[j / 3 * R.stride(0) + j % 3 * R.stride(1)];
-    if (!finite(kept.data() + 9 * i, 9)) reject("axes must be finite");
-    stack.input()[i].axes = kept.data() + 9 * i;
-  }
-}
 
 int step(Stack& stack, Vector memory, Vector out, ConstVector q, ConstMatrix J, nb::tuple actual, nb::tuple desired,
          nb::object bias, nb::object retune, nb::object axes) {
@@ -91,24 +23,11 @@ int step(Stack& stack, Vector memory, Vector out, ConstVector q, ConstMatrix J, 
   if (!finite(q.data(), n)) return 1;
   if (const int code = read_tasks(stack, actual, desired)) return code;
   ConstVector bias_array;
-  if (!bias.is_none()) {
-    bias_array = nb::cast<ConstVector>(bias);
-    expect(bias_array.shape(0), n, "bias");
-  }
-  if (!retune.is_none()) {
-    for (nb::handle item : nb::cast<nb::tuple>(retune)) {
-      const auto pair = nb::cast<nb::tuple>(item);
-      const int task = nb::cast<int>(pair[0]);
-      if (task < 0 || task >= stack.tasks()) reject("there is no task " + std::to_string(task));
-      const auto values = nb::cast<ConstVector>(pair[1]);  // the tuple keeps it alive during the step
-      expect(values.shape(0), 4 * stack.axes(task), "a tuning");
-      stack.input()[task].retune = values.data();
-    }
-  }
+  const double* added = read_bias(bias, n, bias_array);
+  read_changes(stack, retune);
   std::vector<double> kept;
   if (!axes.is_none()) read_axes(stack, nb::cast<nb::tuple>(axes), kept);
-  stack.step(memory.data(), out.data(), q.data(), J.data(), bias.is_none() ? nullptr : bias_array.data(),
-             stack.input());
+  stack.step(memory.data(), out.data(), q.data(), J.data(), added, stack.input());
   return 0;
 }
 
@@ -208,7 +127,10 @@ NB_MODULE(_impedance, m) {
       .def_prop_ro("output_size", &Stack::output_size)
       .def_prop_ro("kept_back", &Stack::kept_back)
       .def("step", &step, nb::arg("memory"), nb::arg("out"), nb::arg("q"), nb::arg("J"), nb::arg("actual"),
-           nb::arg("desired"), nb::arg("bias").none(), nb::arg("retune").none(), nb::arg("axes").none() = nb::none());
+           nb::arg("desired"), nb::arg("bias").none(), nb::arg("retune").none(), nb::arg("axes").none() = nb::none())
+      .def("step_on", &step_on, nb::arg("arm"), nb::arg("memory"), nb::arg("out"), nb::arg("estimate"),
+           nb::arg("targets"), nb::arg("seen").none(), nb::arg("bias").none(), nb::arg("retune").none());
+  nb::class_<Arm>(m, "Arm").def(nb::init<nb::object, std::vector<nb::str>>(), nb::arg("robot"), nb::arg("frames"));
   m.def("drive_axis", &drive_axis, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
         nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(), nb::arg("shape"), nb::arg("tuning"),
         nb::arg("rate_floor"), nb::arg("rotates"), nb::arg("errors"), nb::arg("forces"), nb::arg("balances"));

@@ -1,5 +1,8 @@
 """Compiled core of the stack of fractal impedance tasks. `pliant.controllers.stack` is its face; use that."""
 
+from collections.abc import Sequence
+from typing import Any
+
 from numpy import float64
 from numpy.typing import NDArray
 
@@ -79,6 +82,41 @@ class Stack:
         Returns:
             0, or what is not finite (then nothing was changed): 1 for q, 100 + i for frame i, 200 + i for its
             reference.
+        """
+
+    def step_on(
+        self,
+        arm: Arm,
+        memory: NDArray[float64],
+        out: NDArray[float64],
+        estimate: Any,
+        targets: tuple[Any, ...],
+        seen: tuple[tuple[object, object, bool | None], ...] | None,
+        bias: NDArray[float64] | None,
+        retune: tuple[tuple[int, NDArray[float64]], ...] | None,
+    ) -> int:
+        """One tick on a robot; `memory`, `out`, `bias`, `retune` and the answer as for `step`.
+
+        Args:
+            arm: the robot with the frames of the tasks.
+            estimate: its q says where the frames are.
+            targets: a `TaskReference` for each task in turn; position, rotation and axes are read.
+            seen: of each task's last reference: tuning, modes, and whether it had no rotation. None: is not compared.
+
+        Returns:
+            As `step`; -1 where the references are not of the arm's frames in turn, or not as `seen` says: nothing was
+            changed then.
+
+        Raises TypeError where something is no array.
+        """
+
+class Arm:
+    """The frames of a stack's tasks on a robot; holds scratch space and no state."""
+
+    def __init__(self, robot: Any, frames: Sequence[str]) -> None:
+        """Args: robot: a `pliant._estimation.Tree`; frames: one for each task.
+
+        Raises ValueError for a frame that it does not have.
         """
 
 def drive_axis(

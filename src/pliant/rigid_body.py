@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
+from pliant._estimation import Tree
 from pliant.spatial import Array
 
 
@@ -30,3 +31,30 @@ def mass_along(model: pin.Model, q: Array, frame: int, direction: Array) -> floa
     J = pin.computeFrameJacobian(model, data, q, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
     along = direction @ np.array(J)[:3]
     return 1.0 / float(along @ np.linalg.solve(mass_matrix(model, data, q), along))
+
+
+def tree_of(model: pin.Model) -> Tree:
+    """Kinematics and inertia as the compiled cores take them, with all frames."""
+    motions = joint_motions(model)
+    joints = []
+    for index in range(1, model.njoints):
+        motion, inertia = motions[index - 1], model.inertias[index]
+        turns = bool(np.any(motion[3:]))
+        joints.append(
+            (
+                int(model.parents[index]) - 1,
+                _pose(model.jointPlacements[index]),
+                (motion[3:] if turns else motion[:3]).tolist(),
+                not turns,
+                float(inertia.mass),
+                np.array(inertia.lever).tolist(),
+                np.array(inertia.inertia).ravel().tolist(),
+                float(model.armature[index - 1]),
+            )
+        )
+    frames = [(frame.name, int(frame.parentJoint) - 1, _pose(frame.placement)) for frame in model.frames]
+    return Tree(joints, frames, np.array(model.gravity.linear).tolist())
+
+
+def _pose(pose: pin.SE3) -> tuple[list[float], list[float]]:
+    return np.array(pose.rotation).ravel().tolist(), np.array(pose.translation).tolist()

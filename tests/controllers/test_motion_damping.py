@@ -65,7 +65,7 @@ def test_a_motion_as_the_reference_asks_for_and_free_axes_are_left_alone() -> No
         free = J @ v + np.concatenate([axes.rotation[:, 2], rng.normal(size=3)])
         assert np.abs(damped(v, free, modes=axes)).max() < 1e-9
         assert np.abs(damped(v, free)).max() > 1.0  # the control
-        assert not damped(v, np.zeros(6), rate=0.0).any()
+        assert np.abs(damped(v, np.zeros(6), rate=0.0)).max() < 1e-12
 
 
 @pytest.mark.parametrize("value", [-1.0, np.inf, np.nan])

@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from pliant import _impedance
+from pliant.axis_modes import AxisModes
 from pliant.controllers.attractor import Law
 from pliant.controllers.damping import Damping
 from pliant.controllers.energy_ledger import Diagnostics, LedgerChannel, channel_table, require_length
@@ -20,6 +21,7 @@ from pliant.controllers.stack_input import check_stack, free_axes, joints_that_m
 from pliant.controllers.task import FrameTask
 from pliant.errors import ShapeError, SignalError
 from pliant.interfaces import Controller, Needs
+from pliant.rigid_body import tree_of
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import Array
@@ -30,23 +32,21 @@ class StackState:
     """State between two ticks: phases, turning points, filters and ledger in one array, and the active tunings."""
 
     memory: Array
+    tuned: _Tuned
+
+
+@dataclass(frozen=True, slots=True)
+class _Tuned:
+    """Active tunings, and what of the references they follow from: while that is the same, so are they."""
+
+    seen: tuple[tuple[ImpedanceTuning | None, AxisModes | None, bool | None], ...]
+    """of each task's reference: tuning, modes, and whether it has no rotation (None: nothing was seen yet)"""
     tunings: tuple[ImpedanceTuning | None, ...]
     free: tuple[tuple[bool, ...], ...]
     """of each task, which axes are free; empty: none"""
-    workspace: _Workspace
-    """scratch memory of the kinematics; nothing in it outlives a step"""
 
 
-class _Workspace:
-    """pinocchio's data, and views into it that stay valid while it lives."""
-
-    __slots__ = ("data", "jacobian", "poses")
-
-    def __init__(self, model: pin.Model, frames: Sequence[int]) -> None:
-        self.data = model.createData()
-        self.jacobian: Array = self.data.J
-        poses = [self.data.oMf[frame] for frame in frames]
-        self.poses: tuple[Any, ...] = tuple(part for pose in poses for part in (pose.translation, pose.rotation))
+_CHANGED = -1  # the core's answer where references are not as they were seen before
 
 
 def needs_of_law(law: Law) -> Needs:
@@ -104,30 +104,37 @@ class Stack(Controller[StackState]):
         self.damping = damping or Damping()
         self.gravity_compensation = gravity_compensation
         self._frames = [robot.frame_id(task.frame) for task in tasks]
+        self._n, self._biased = robot.n, gravity_compensation or self.damping.any
+        self._names = [task.frame for task in tasks]
         self._scratch = robot.model.createData()  # nothing in it outlives a step
-        self._core = _impedance.Stack(
+        self._arm = _impedance.Arm(tree_of(robot.model), self._names)
+        self._core = self._compiled()
+        labels_and_axes = [(task.label, task.axes) for task in self.tasks]
+        self._table = channel_table(robot.n, labels_and_axes, account=self.law is Law.CAPPED)
+        self._size = self._core.output_size
+        require_length(self._table, self._size)
+
+    def _compiled(self) -> _impedance.Stack:
+        return _impedance.Stack(
             law=self.law.value,
-            period=period,
-            rate_gain=self.phases.rate_gain(period),
-            noise_gain=self.phases.noise_gain(period),
+            period=self.period,
+            rate_gain=self.phases.rate_gain(self.period),
+            noise_gain=self.phases.noise_gain(self.period),
             hold_limit=self.phases.hold_limit,
-            blend_step=self.phases.blend_step(period),
-            account=AccountSettings().numbers(period) if self.law is Law.CAPPED else None,
-            torque_limit=robot.torque_limit,
+            blend_step=self.phases.blend_step(self.period),
+            account=AccountSettings().numbers(self.period) if self.law is Law.CAPPED else None,
+            torque_limit=self.robot.torque_limit,
             tasks=[
                 (
                     task.axes,
                     task.shape.value,
                     self.phases.rate_floor,
                     self.phases.rate_floor_angular,
-                    joints_that_move(robot, frame),
+                    joints_that_move(self.robot, frame),
                 )
                 for task, frame in zip(self.tasks, self._frames, strict=True)
             ],
         )
-        labels_and_axes = [(task.label, task.axes) for task in self.tasks]
-        self._table = channel_table(robot.n, labels_and_axes, account=self.law is Law.CAPPED)
-        require_length(self._table, self._core.output_size)
 
     @property
     def needs(self) -> Needs:
@@ -143,9 +150,9 @@ class Stack(Controller[StackState]):
     def init(self, estimate: Estimate) -> StackState:
         """Every axis starts diverging, with an empty ledger. Raises ShapeError for a robot with other joints."""
         self.robot.vector(estimate.q, "q")
-        memory = np.zeros(self._core.state_size)
-        none, work = (None,) * len(self.tasks), _Workspace(self.robot.model, self._frames)
-        return StackState(memory, none, ((),) * len(self.tasks), work)
+        none = (None,) * len(self.tasks)
+        tuned = _Tuned(((None, None, None),) * len(self.tasks), none, ((),) * len(self.tasks))
+        return StackState(np.zeros(self._core.state_size), tuned)
 
     def step(self, estimate: Estimate, reference: Reference, state: StackState) -> tuple[Command, StackState]:
         """The torque for the next period, and the next state.
@@ -155,76 +162,67 @@ class Stack(Controller[StackState]):
             ShapeError: q, a pose or a tuning of the wrong size.
             SignalError: q or a pose that is not finite.
         """
-        model, work = self.robot.model, state.workspace
-        targets = [target_of(reference, i, task.frame) for i, task in enumerate(self.tasks)]
-        desired = tuple([part for target in targets for part in (target.position, target.rotation)])
-        tunings, free = self._tunings(targets, state)
-        same = tunings is state.tunings and free == state.free
-        retune = None if same else self._changed(state, tunings, free)
-        axes = tuple([None if target.modes is None else target.modes.rotation for target in targets])
-        memory, out = state.memory.copy(), np.empty(self._core.output_size)
+        out, memory = np.empty(self._size), state.memory.copy()
+        targets, tuned = reference.tasks, state.tuned
         try:
-            pin.computeJointJacobians(model, work.data, estimate.q)
-            for frame in self._frames:
-                pin.updateFramePlacement(model, work.data, frame)
-            bias = self._bias(estimate, targets, work.data)
-            code = self._core.step(memory, out, estimate.q, work.jacobian, work.poses, desired, bias, retune, axes)
+            bias = self._bias(estimate, reference) if self._biased else None
+            code = self._core.step_on(self._arm, memory, out, estimate, targets, tuned.seen, bias, None)
+            if code == _CHANGED:
+                targets = self._targets(reference)
+                tuned = self._tuned(targets)
+                retune = self._changed(state.tuned, tuned)
+                code = self._core.step_on(self._arm, memory, out, estimate, targets, None, bias, retune)
         except (ValueError, TypeError, RuntimeError) as error:
-            raise ShapeError(self._misshapen(estimate, desired, error)) from error
+            raise ShapeError(self._misshapen(estimate, self._targets(reference), error)) from error
         if code:
             raise SignalError(self._not_finite(code, estimate))
-        n = self.robot.n
-        command = Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out))
-        return command, StackState(memory, tunings, free, work)
+        n = self._n
+        return Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out)), StackState(memory, tuned)
 
-    def _bias(self, estimate: Estimate, targets: Sequence[TaskReference], data: pin.Data) -> Array | None:
+    def _targets(self, reference: Reference) -> tuple[TaskReference, ...]:
+        return tuple([target_of(reference, i, task.frame) for i, task in enumerate(self.tasks)])
+
+    def _bias(self, estimate: Estimate, reference: Reference) -> Array | None:
         """(n,) N·m beside the tasks; None for nothing."""
         model, damping = self.robot.model, None
+        q = self.robot.vector(estimate.q, "q")
         if self.damping.any:
-            v, frames = self.robot.vector(estimate.v, "v"), list(zip(self._frames, targets, strict=True))
-            damping = self.damping.torque(model, self._scratch, estimate.q, v, frames)
+            v = self.robot.vector(estimate.v, "v")
+            frames = list(zip(self._frames, self._targets(reference), strict=True))
+            damping = self.damping.torque(model, self._scratch, q, v, frames)
         if not self.gravity_compensation:
             return damping
-        gravity = pin.computeGeneralizedGravity(model, data, estimate.q)
+        gravity = pin.computeGeneralizedGravity(model, self._scratch, q)
         return gravity if damping is None else gravity + damping
 
     def kept_back(self, state: StackState, torque: Array) -> StackState:
         """Adds to the accounts that part of the last torque, (n,) N·m, was not sent."""
         memory, start = state.memory.copy(), self._core.kept_back
-        memory[start : start + self.robot.n] += torque
+        memory[start : start + self._n] += torque
         return replace(state, memory=memory)
 
-    def _tunings(
-        self, targets: Sequence[TaskReference], last: StackState
-    ) -> tuple[tuple[ImpedanceTuning | None, ...], tuple[tuple[bool, ...], ...]]:
-        """The tunings, those of `last` themselves if none changed, and the free axes."""
-        tunings = last.tunings
-        for i, (task, target) in enumerate(zip(self.tasks, targets, strict=True)):
-            tuning = target.tuning or task.tuning
-            if tuning is not tunings[i]:
-                tunings = (*tunings[:i], tuning, *tunings[i + 1 :])
-        return tunings, tuple([free_axes(target) for target in targets])
+    def _tuned(self, targets: Sequence[TaskReference]) -> _Tuned:
+        tunings = tuple([target.tuning or task.tuning for task, target in zip(self.tasks, targets, strict=True)])
+        seen = tuple([(target.tuning, target.modes, target.rotation is None) for target in targets])
+        return _Tuned(seen, tunings, tuple([free_axes(target) for target in targets]))
 
-    def _changed(
-        self, last: StackState, tunings: tuple[ImpedanceTuning | None, ...], free: tuple[tuple[bool, ...], ...]
-    ) -> tuple[tuple[int, Array], ...]:
+    def _changed(self, last: _Tuned, now: _Tuned) -> tuple[tuple[int, Array], ...] | None:
         changes: list[tuple[int, Array]] = []
-        for i, new in enumerate(tunings):
-            if new is None or (new is last.tunings[i] and free[i] == last.free[i]):
+        for i, (task, new, free) in enumerate(zip(self.tasks, now.tunings, now.free, strict=True)):
+            if new is None or (new is last.tunings[i] and free == last.free[i]):
                 continue
-            if new.axes != self.tasks[i].axes:
-                raise ShapeError(
-                    f"task {self.tasks[i].label!r} has {self.tasks[i].axes} axes, its new tuning {new.axes}"
-                )
-            used = loosened(new, free[i]) if free[i] else new
+            if new.axes != task.axes:
+                raise ShapeError(f"task {task.label!r} has {task.axes} axes, its new tuning {new.axes}")
+            used = loosened(new, free) if free else new
             changes.append((i, np.concatenate([used.stiffness, used.force_max, used.range, linear_range(used)])))
-        return tuple(changes)
+        return tuple(changes) or None
 
-    def _misshapen(self, estimate: Estimate, desired: Sequence[Any], error: Exception) -> str:
+    def _misshapen(self, estimate: Estimate, targets: Sequence[TaskReference], error: Exception) -> str:
         if np.shape(estimate.q) != (self.robot.n,):
             return f"q must be an array of {self.robot.n} entries for robot {self.robot.name!r}, got {estimate.q!r}"
         for i, task in enumerate(self.tasks):
-            position, rotation = desired[2 * i], desired[2 * i + 1]
+            position: Any = targets[i].position
+            rotation: Any = targets[i].rotation
             if not isinstance(position, np.ndarray) or position.shape != (3,):
                 return f"the position of frame {task.frame!r} must be an array of 3 entries, got {position!r}"
             if rotation is not None and (not isinstance(rotation, np.ndarray) or rotation.shape != (3, 3)):

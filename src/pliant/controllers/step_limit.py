@@ -75,6 +75,7 @@ class StepLimit(Controller[StepLimitState]):
         self.inner = inner
         self.step_max: Array = share * robot.torque_limit
         self._limit: Array = robot.torque_limit
+        self._n = len(self.step_max)
         self._core = _guard.StepLimit(self.step_max.tolist())
 
     @property
@@ -98,13 +99,14 @@ class StepLimit(Controller[StepLimitState]):
 
     def step(self, estimate: Estimate, reference: Reference, state: StepLimitState) -> tuple[Command, StepLimitState]:
         command, inner = self.inner.step(estimate, reference, state.inner)
-        wanted, channels, n = command.torque, command.diagnostics, len(self.step_max)
-        memory, out = state.memory.copy(), np.empty(2 * n)
-        exceeded = self._core.step(wanted, command.clamped, estimate.q, channels, SPENDABLE, memory, out)
+        n, memory, out = self._n, state.memory.copy(), np.empty(2 * self._n)
+        channels = command.diagnostics
+        exceeded = self._core.step(command.torque, command.clamped, estimate.q, channels, SPENDABLE, memory, out)
         if exceeded is not None:
             inner = self.inner.kept_back(inner, memory[2 * n : 3 * n].copy())
         channels = _with(channels, float(memory[-1]), exceeded or 0.0)
-        return Command(command.time, out[:n], out[n:], channels), StepLimitState(inner, memory)
+        bounded = Command(command.time, out[:n], out[n:], channels)
+        return bounded, StepLimitState(inner, memory)
 
 
 def _with(inner: Mapping[str, Any], energy: float, exceeded: float) -> Mapping[str, Any]:

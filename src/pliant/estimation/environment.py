@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from pliant._estimation import EnvironmentStage
 from pliant.estimation.chain import ChainedEstimator
-from pliant.estimation.compiled_robot import compiled_surface, surface_facing, tree_of
+from pliant.estimation.compiled_surface import compiled_surface, surface_facing
 from pliant.estimation.environment_fit import EnvironmentFit, FitConfig
 from pliant.interfaces import Estimator
+from pliant.rigid_body import tree_of
 from pliant.robot import Robot
 from pliant.surfaces import SurfaceGeometry
 
@@ -54,5 +55,5 @@ class EnvironmentEstimator(ChainedEstimator):
         self.fit = EnvironmentFit(config or FitConfig(), period)
         robot.frame_id(frame)
         limit = math.inf if sliding is None else sliding
-        stage = EnvironmentStage(tree_of(robot), frame, compiled_surface(self.surface), self.fit.core, limit)
+        stage = EnvironmentStage(tree_of(robot.model), frame, compiled_surface(self.surface), self.fit.core, limit)
         super().__init__(stage, inner, frozenset(), environment=frame)

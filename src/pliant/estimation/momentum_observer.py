@@ -22,8 +22,9 @@ import numpy.typing as npt
 from pliant._estimation import MomentumStage
 from pliant.errors import ConfigError, options
 from pliant.estimation.chain import ChainedEstimator
-from pliant.estimation.compiled_robot import compiled_surface, surface_facing, tree_of
+from pliant.estimation.compiled_surface import compiled_surface, surface_facing
 from pliant.interfaces import Estimator
+from pliant.rigid_body import tree_of
 from pliant.robot import Robot
 from pliant.surfaces import SurfaceGeometry
 
@@ -92,7 +93,7 @@ class MomentumObserver(ChainedEstimator):
             robot.frame_id(frame)
         counted = () if contact == "none" else frames
         stage = MomentumStage(
-            robot=tree_of(robot),
+            robot=tree_of(robot.model),
             gain=gain,
             measured=torque == "measured",
             surface=compiled_surface(self.surface),

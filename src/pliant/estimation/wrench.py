@@ -9,9 +9,9 @@ from pliant._estimation import Tree, WrenchStage
 from pliant.errors import ConfigError
 from pliant.estimation.carried_mass import CarriedMass
 from pliant.estimation.chain import ChainedEstimator
-from pliant.estimation.compiled_robot import tree_of
 from pliant.estimation.joint_acceleration import JointAcceleration
 from pliant.estimation.tare import Tare
+from pliant.rigid_body import tree_of
 from pliant.robot import Robot
 
 
@@ -71,7 +71,7 @@ class WrenchEstimator(ChainedEstimator):
             robot.frame_id(name)
         _check_contact_frames(robot, self.contact_frames)
         stage = wrench_stage(
-            tree_of(robot),
+            tree_of(robot.model),
             velocity_gain,
             self.thresholds,
             self.carried,

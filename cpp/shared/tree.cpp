@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace pliant::estimation {
+namespace pliant::bodies {
 namespace {
 
 void multiply(const double* A, const double* B, double* out) {
@@ -33,12 +33,26 @@ Vec3 turned(const double* inertia, const Rotation& R, const Vec3& x) {
 
 const Body still = {{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}}, {}, {}, {}, {}};
 
+// The pose of what is fixed to a body at a placement. Returns the way to it from the body's origin.
+Vec3 place(const Pose& carrier, const Pose& placement, Pose& found) {
+  multiply(carrier.R, placement.R, found.R);
+  const Vec3 lever = carrier.rotation().to_world(placement.p);
+  found.p = carrier.p + lever;
+  return lever;
+}
+
+// Turns a pose about an axis of its own.
+void turn(const Vec3& axis, double angle, Pose& pose) {
+  double local[9], fixed[9];
+  turn(axis, angle, local);
+  std::copy(pose.R, pose.R + 9, fixed);
+  multiply(fixed, local, pose.R);
+}
+
 // What is fixed to a body at a placement.
 Body fixed_to(const Body& carrier, const Pose& placement) {
   Body b;
-  multiply(carrier.pose.R, placement.R, b.pose.R);
-  const Vec3 lever = carrier.pose.rotation().to_world(placement.p);
-  b.pose.p = carrier.pose.p + lever;
+  const Vec3 lever = place(carrier.pose, placement, b.pose);
   b.spin = carrier.spin;
   b.spinning = carrier.spinning;
   b.velocity = carrier.velocity + cross(carrier.spin, lever);
@@ -87,14 +101,30 @@ void Tree::move(const double* q, const double* v, const double* a, Body* bodies)
       b.acceleration = b.acceleration + cross(b.spinning, slide) + cross(b.spin, cross(b.spin, slide)) +
                        2 * rate * cross(b.spin, axis) + push * axis;
     } else {
-      double local[9], fixed[9];
-      turn(joint.axis, q[i], local);
-      std::copy(b.pose.R, b.pose.R + 9, fixed);
-      multiply(fixed, local, b.pose.R);
+      turn(joint.axis, q[i], b.pose);
       b.spinning = b.spinning + push * axis + rate * cross(b.spin, axis);
       b.spin = b.spin + rate * axis;
     }
   }
+}
+
+void Tree::place(const double* q, Body* bodies) const {
+  for (int i = 0; i < n(); ++i) {
+    const Joint& joint = joints_[size_t(i)];
+    Pose& pose = bodies[i].pose;
+    pliant::bodies::place((joint.parent < 0 ? still : bodies[joint.parent]).pose, joint.placement, pose);
+    if (joint.prismatic) {
+      pose.p = pose.p + q[i] * pose.rotation().to_world(joint.axis);
+    } else {
+      turn(joint.axis, q[i], pose);
+    }
+  }
+}
+
+Pose Tree::pose_of(const Frame& frame, const Body* bodies) const {
+  Pose found;
+  pliant::bodies::place((frame.joint < 0 ? still : bodies[frame.joint]).pose, frame.placement, found);
+  return found;
 }
 
 Body Tree::at(const Frame& frame, const Body* bodies) const {
@@ -149,4 +179,4 @@ void Tree::add_torque(const Frame& frame, const Body* bodies, const Vec3& force,
   for (int i = frame.joint; i >= 0; i = joints_[size_t(i)].parent) torque[i] += dot(motion(i, bodies[i]), wrench);
 }
 
-}  // namespace pliant::estimation
+}  // namespace pliant::bodies

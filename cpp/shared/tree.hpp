@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "../shared/vec3.hpp"
+#include "vec3.hpp"
 
-namespace pliant::estimation {
+namespace pliant::bodies {
 
 struct Pose {
   double R[9];  // row by row, R_world_local
@@ -64,7 +64,12 @@ class Tree {
 
   // Bodies (n) at q; v and a may be null, for zero.
   void move(const double* q, const double* v, const double* a, Body* bodies) const;
+  // The same of poses alone: what moves is left as it was.
+  void place(const double* q, Body* bodies) const;
+  Pose pose_of(const Frame& frame, const Body* bodies) const;
   Body at(const Frame& frame, const Body* bodies) const;
+  // Motion of a joint at unit rate, of a body that it moves.
+  Screw motion(int joint, const Body& body) const;
 
   // Momentum p = M v (n) and what the model adds to ṗ beside the torque sent, β = Cᵀ v − g (n), with what is
   // compensated taken off. `bodies` at q and v with a = 0; `scratch` (n).
@@ -81,9 +86,8 @@ class Tree {
   std::vector<Frame> frames_;
   Vec3 gravity_;
 
-  Screw motion(int joint, const Body& body) const;
   // Gives to every joint what all bodies behind it have together.
   void gather(Screw* of_bodies) const;
 };
 
-}  // namespace pliant::estimation
+}  // namespace pliant::bodies
