@@ -109,10 +109,21 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
 MOST_LINES, MOST_LINES_OF_A_FUNCTION = 250, 60
 
 
-def sources(*suffixes: str) -> list[Path]:
-    return sorted(
-        path for folder in ("src/pliant", "cpp") for path in (ROOT / folder).rglob("*") if path.suffix in suffixes
-    )
+SOURCES, BESIDE = ("src/pliant", "cpp"), ("tests", "benchmarks", "examples")
+
+
+def sources(folders: tuple[str, ...], *suffixes: str) -> list[Path]:
+    return sorted(path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix in suffixes)
+
+
+def long_files(paths: list[Path]) -> dict[str, int]:
+    """Lines of the files that are longer than they may be."""
+    lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in paths}
+    return {
+        str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path.name): count
+        for path, count in lines.items()
+        if count > MOST_LINES
+    }
 
 
 def long_functions(path: Path) -> list[str]:
@@ -126,10 +137,25 @@ def long_functions(path: Path) -> list[str]:
 
 
 def test_files_and_functions_are_short() -> None:
-    lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in sources(".py", ".hpp", ".cpp")}
-    assert len(lines) > 300  # it found them
-    assert {str(path.relative_to(ROOT)): count for path, count in lines.items() if count > MOST_LINES} == {}
-    assert {name for path in sources(".py") for name in long_functions(path)} == set()
+    files = sources(SOURCES, ".py", ".hpp", ".cpp")
+    assert len(files) > 300  # it found them
+    assert long_files(files) == {}
+    assert {name for path in sources(SOURCES, ".py") for name in long_functions(path)} == set()
+
+
+@pytest.mark.parametrize("folder", BESIDE)
+def test_files_and_functions_beside_the_package_are_short(folder: str) -> None:
+    files = sources((folder,), ".py")
+    assert len(files) > 5  # it found them
+    assert long_files(files) == {}
+    assert {name for path in files for name in long_functions(path)} == set()
+
+
+def test_a_long_file_would_be_noticed(tmp_path: Path) -> None:
+    path = tmp_path / "long.py"
+    for lines, found in ((MOST_LINES, {}), (MOST_LINES + 1, {"long.py": MOST_LINES + 1})):
+        path.write_text("pass\n" * lines)
+        assert long_files([path]) == found
 
 
 def test_a_long_function_would_be_noticed(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Tasks that are lists of phases: the studies' cases as files, what is refused, what is drawn."""
+"""Tasks that are lists of phases: the studies' cases as files, how phases end, what is drawn."""
 
 from __future__ import annotations
 
@@ -8,28 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pliant import loop
 from pliant.configuration import merged
-from pliant.errors import ConfigError
 from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
 from pliant.robot import Robot
 from pliant.studies.task.build_list import listed
-from pliant.studies.task.config import TaskCase, case_of
 from pliant.studies.task.listed import changes_of, scene_of, stages_of
 from pliant.studies.task.measure_list import measured_list
 from pliant.studies.task.study import study_of
-from pliant.tasks import load_task
-from pliant.telemetry.log import Log
-from pliant.telemetry.recorder import Recorder
-
-
-def recorded(study: Any, case: Any, period: float) -> Log:
-    """The log of a run in memory."""
-    wired, recorder = study.build(case), Recorder(None)
-    ticks = range(round(case.duration / period))
-    loop.run(wired.plant, wired.estimator, wired.source, wired.controller, ticks, [recorder])
-    return recorder.log()
+from tests.tasks.lists import FIRST, PHASES, case_from, recorded
 
 
 @pytest.mark.study
@@ -110,37 +97,6 @@ def test_pushes_and_parts_that_touch_are_those_of_the_study(study: str, case: st
     assert len({pushes for _, pushes, _ in drawn}) == (2 if study == "stack" else 1)
 
 
-PHASES = """
-robot = "leg3"
-controller = "haptic"
-moves = "foot"
-compensates = "gravity"
-timing = { sensing_delay = 0.0, computation_delay = 0.0 }
-simulation = { contact = "explicit", physics_step = 1e-4 }
-impedance = { stiffness = [6000, 6000, 12000], force_max = [150, 150, 300], range = 0.025 }
-scene.floor = { shape = "plane", stiffness = 1e5, damping = 1e3, friction = 0.0 }
-"""
-FIRST = '[[phase]]\nname = "down"\ntarget = [0.1, 0.0, 0.017]\nwrench = [0, 0, 20]\n'
-INSERTION = """
-robot = "panda"
-controller = "haptic"
-scene.hole = { shape = "plane", pose = { xyz = [0.5, 0.0, 0.2] } }
-[[phase]]
-frame = "hole"
-target = [0.0, 0.0, -0.01]
-modes = ["motion", "motion", "force", "force", "force", "motion"]
-wrench = [0, 0, 8, 0, 0, 0]
-until = { any = [{ depth = 0.004 }, { timeout = 8.0 }] }
-else = "fail"
-"""
-
-
-def case_from(folder: Path, text: str) -> TaskCase:
-    file = folder / "task.toml"
-    file.write_text(text, encoding="utf-8")
-    return case_of(load_task(file), "task")
-
-
 @pytest.mark.study
 def test_phases_end_by_what_is_felt_and_the_force_is_held(tmp_path: Path) -> None:
     text = PHASES + FIRST + 'until = { any = [{ force = 15.0 }, { timeout = 2.0 }] }\n[[phase]]\nname = "hold"\n'
@@ -170,73 +126,6 @@ def test_a_timeout_that_fails_is_a_failed_run(tmp_path: Path) -> None:
     later = run_case(study, goes_on).failure
     assert later is not None
     assert later.startswith("no contact: frame")  # the run went on to its end
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (INSERTION.replace('modes = ["motion", "motion", "force"', 'modes = ["motion", "motion", "motion"').replace(
-            '"force", "force", "motion"]', '"motion", "motion", "motion"]'), r"axes whose mode is not force: z"),
-        (INSERTION + 'motion = { shape = "stop" }\n', r"'stop' is for a timed list"),
-        (INSERTION.replace('frame = "hole"', 'frame = "hull"'), r"a thing of the scene or a pose; valid: 'hole'"),
-        (PHASES + FIRST + 'touch = "flor"\nduration = 1.0\n', r"touch names no thing.*did you mean 'floor'"),
-        (PHASES + FIRST + "until = { force = 3.0 }\n", r"'down' may never end"),
-        (PHASES + '[[phase]]\nduration = 1.0\n', r"the first phase needs a target"),
-        (PHASES + FIRST + "duration = 1.0\n[[event]]\nchange = { tarjet = [0, 0, 0] }\n", r"did you mean 'target'"),
-        (PHASES + FIRST + "duration = 1.0\n[[event]]\nchange = { target = [0, 0] }\n", r"target is 3 numbers, got"),
-        (PHASES + FIRST + 'duration = 1.0\n[[event]]\nchange = { reset = "no" }\n', r"true or false, got 'no'"),
-        (
-            PHASES + FIRST + "duration = 1.0\n[[event]]\nchange = { wrench = [0, 0, { unifrm = [1, 2] }] }\n",
-            r"event 1: a value is drawn as { uniform = … }",
-        ),
-        (
-            PHASES + FIRST + "duration = 1.0\n[[event]]\nevery = 1e-9\nchange = { force_max = 9.0 }\n",
-            r"at most 100000 changes, got 1000000000",
-        ),
-        (
-            PHASES.replace('"haptic"', '"operational-space"').replace("impedance =", "planner = {} #")
-            + FIRST
-            + "duration = 1.0\n[[event]]\nfactor = { stiffness = 2.0 }\n",
-            r"event 1: factor scales impedances, and this controller has none",
-        ),
-        (
-            PHASES + FIRST + 'duration = 1.0\n[[phase]]\nduration = 1.0\ntracks.foot = { shape = "hold" }\n',
-            r"a phase with tracks is the only one",
-        ),
-        (
-            'robot = "panda"\ncontroller = "stack"\n[[phase]]\nduration = 1.0\ntracks.flange = { shape = "hold" }\n'
-            'tracks.elbow = { shape = "hold" }\n',
-            r"the first frame has a motion, and the others are 'posture'",
-        ),
-    ],
-)  # fmt: skip
-def test_what_cannot_be_run_is_refused_in_a_sentence(tmp_path: Path, text: str, message: str) -> None:
-    case = case_from(tmp_path, text)  # the file itself is in order
-    with pytest.raises(ConfigError, match=message) as caught:
-        study_of(str(tmp_path / "task.toml")).build(case)
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (PHASES + FIRST, r"either duration or until"),
-        (PHASES + FIRST + "duration = 1.0\nuntil = { contact = true }\n", r"either duration or until"),
-        (PHASES + FIRST + "until = { contact = true, timeout = 2.0 }\n", r"a timeout stands alone"),
-        (PHASES + FIRST + "until = {}\n", r"a condition needs one of"),
-        (PHASES + FIRST.replace("[0, 0, 20]", "[0, 20]") + "duration = 1.0\n", r"three or six axes, got 2"),
-        (PHASES + FIRST + "duration = 1.0\n" + FIRST + "duration = 1.0\n", r"phases need different names"),
-        (PHASES + FIRST + "duration = 1.0\n[[event]]\ncount = 3\n", r"\(count\) needs the time between them"),
-        (PHASES + FIRST + 'duration = 1.0\n[[event]]\nfile = "a.csv"\nevery = 1.0\n', r"an event of a file has no"),
-        (PHASES, r"belongs to a task of \[\[phase\]\]"),
-        (PHASES + "path.speed = 0.1\n" + FIRST + "duration = 1.0\n", r"path belongs to a task with a path"),
-        (PHASES + "truth.tilt = 3.0\n" + FIRST + "duration = 1.0\n", r"truth\.tilt belongs to a task with a path"),
-        (PHASES.replace('"plane"', '"plane", mass = 1.0') + FIRST + "duration = 1.0\n", r"a plane cannot move"),
-    ],
-)
-def test_a_file_that_contradicts_itself_is_refused(tmp_path: Path, text: str, message: str) -> None:
-    with pytest.raises(ConfigError, match=message):
-        case_from(tmp_path, text)
 
 
 def test_numbers_are_in_the_axes_of_the_phases_frame(tmp_path: Path) -> None:

@@ -4,68 +4,21 @@ by their profile."""
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from pliant.configuration import merged
-from pliant.errors import ConfigError
-from pliant.experiments.pushes import pushes_of
 from pliant.interfaces import Lookahead
-from pliant.mpc.config import MpcConfig
-from pliant.robot import Robot
-from pliant.signals import Estimate, Reference
-from pliant.simulation import Imperfections, MujocoPlant
+from pliant.signals import Estimate
 from pliant.studies.task.build_list import listed
-from pliant.studies.task.check import checked_list
-from pliant.studies.task.config import TaskCase, case_of
-from pliant.studies.task.start import start_of
 from pliant.studies.task.study import study_of
 from pliant.studies.task.timed import timed_source
-from pliant.studies.task.world import imperfections_of
-from pliant.tasks import load_task
-from pliant.tasks.parts import Pose, ToolConfig
-from tests.tasks.test_phases import recorded
+from tests.tasks.lists import case_from, recorded
+from tests.tasks.timed_lists import DOWN, PRESS, TIMED, places, said
 
-FILE = "tables-2-3-4"
-TIMED = """
-robot = "iiwa14"
-controller = "force-feedback-mpc"
-timed = true
-locked = { A7 = 0.0 }
-start = { xyz = [0.6, 0.0, 0.15], rpy = [180, 0, 180] }
-"""
-DOWN = '[[phase]]\nname = "down"\ntarget = [0.6, 0.0, 0.1]\nduration = 0.5\n'
-PRESS = '[[phase]]\nname = "press"\nframe = "contact"\nwrench = [0, 0, 10]\nduration = 1.0\n'
 UNTIL = "until = { any = [{ contact = true }, { timeout = 0.4 }] }\n"
 SQUARE = {"times": (0.0, 0.2, 0.6), "wrench": ((0.0, 0.0, 5.0), (0.0, 0.0, 25.0), (0.0, 0.0, 10.0))}
-
-
-def case_from(folder: Path, text: str) -> TaskCase:
-    file = folder / "task.toml"
-    file.write_text(text, encoding="utf-8")
-    return case_of(load_task(file), "task")
-
-
-def said(case: TaskCase, seconds: float, off: float = 0.0, touching: bool = False) -> list[Reference]:
-    """References every 10 ms of a robot that stands still. Args: off: m, by which its first joint is beside its start;
-    touching: whether contact is felt."""
-    made = listed(case)
-    source, nothing = timed_source(case, made.robot, made.start, None), np.zeros(made.robot.n)
-    q = made.start + off * np.eye(made.robot.n)[0]
-    found: list[Reference] = []
-    state: Any = None
-    for time in np.arange(0.0, seconds, 0.01).tolist():
-        estimate = Estimate(time, q, nothing, nothing, nothing, contacts={"tool": touching})
-        state = source.init(estimate) if state is None else state
-        reference, state = source.step(estimate, state)
-        found.append(reference)
-    return found
-
-
-def places(references: list[Reference]) -> np.ndarray:
-    return np.array([one.tasks[0].position for one in references])
 
 
 def test_a_target_is_reached_at_rest_when_its_phase_ends(tmp_path: Path) -> None:
@@ -193,142 +146,3 @@ def test_a_force_across_a_tilted_plane_is_held_as_on_a_level_one(tmp_path: Path,
     assert found["press/contact_breaks"] == 0.0
     force = log["truth/tool/wrench"][-200:, :3].mean(axis=0)
     np.testing.assert_allclose(force, 20.0 * np.array([s, 0.0, c]), atol=0.6)
-
-
-def test_a_start_is_a_pose_that_the_moved_frame_takes() -> None:
-    robot = listed(study_of(FILE).case(FILE)).robot
-    pose = Pose(xyz=(0.6, 0.1, 0.2), rpy=(180.0, 0.0, 180.0))
-    q = start_of(robot, "tool", pose)
-    place, rotation = robot.placement(q, "tool")
-    np.testing.assert_allclose(place, pose.xyz, atol=1e-3)
-    np.testing.assert_allclose(rotation, pose.rotation, atol=1e-2)
-    np.testing.assert_array_equal(start_of(robot, "tool", None), robot.home)
-    np.testing.assert_allclose(start_of(robot, "tool", tuple(np.degrees(q))), q)
-    with pytest.raises(ConfigError, match=r"cannot start with frame 'tool' at \[3.0, 0.0, 0.2\] m.*it misses by \d+"):
-        start_of(robot, "tool", Pose(xyz=(3.0, 0.0, 0.2)))
-
-
-def test_a_phase_has_the_weights_of_the_one_that_it_is_like() -> None:
-    study = study_of(FILE)
-    weights = listed(study.case("stop")).parameters
-    assert isinstance(weights, MpcConfig)
-    assert weights.phases["stop"] == weights.phases["circle"]
-    alone = listed(merged(study.case("stop"), {"phase": {"stop": {"like": None}}})).parameters
-    assert isinstance(alone, MpcConfig)
-    assert alone.phases["stop"] != alone.phases["circle"]
-
-
-def test_a_preset_is_what_control_changes() -> None:
-    case = study_of(FILE).case(FILE)
-    weights = {name: listed(merged(case, {"preset": name})).parameters for name in ("tuned", "perfect", "paper", None)}
-    assert weights[None] == weights["tuned"]  # readings are late
-    prompt = merged(case, {"preset": None, "timing": {"sensing_delay": 0.0}})
-    assert listed(prompt).parameters == weights["perfect"]
-    assert len({one.model_dump_json() for one in weights.values()}) == 3
-
-
-def test_a_shaft_carries_a_ball() -> None:
-    plain, thick = ToolConfig(radius=0.015).tool(), ToolConfig(radius=0.015, shaft=0.02).tool()
-    assert (plain.reach, thick.reach) == (0.015, 0.015)
-    assert thick.inertia.inertia[2, 2] == pytest.approx(0.5 * thick.mass * 0.02**2)
-    assert plain.inertia.inertia[2, 2] == pytest.approx(0.5 * plain.mass * 0.015**2)
-    robot = Robot.load("iiwa14", tool=thick).touching_with(thick)
-    assert robot.contact_radius["tool"] == 0.015
-    with pytest.raises(ValueError, match=r"tool\.shaft carries a ball.*got 'cylinder'"):
-        ToolConfig(shape="cylinder", shaft=0.02)
-
-
-def test_imperfections_change_a_named_set() -> None:
-    case = study_of(FILE).case(FILE)
-    changed = merged(case, {"truth": {"imperfections": {"ripple": {"amplitude": 5.0}}}})
-    p3 = Imperfections.p3(computation_delay=0.0)
-    assert imperfections_of(case) == p3
-    assert imperfections_of(changed) == merged(p3, {"ripple": {"amplitude": 5.0}})
-    with pytest.raises(ConfigError, match=r"imperfections\.base: valid: 'none', 'p3'.*got 'p4'"):
-        imperfections_of(merged(case, {"truth": {"imperfections": {"base": "p4"}}}))
-
-
-def test_level_pushes_are_horizontal_in_any_direction() -> None:
-    case = study_of(FILE).case("fast-pushed")
-    pushes = [push for seed in range(5) for push in pushes_of(case.disturbance, seed, 10.0)]
-    forces = np.array([push.force for push in pushes])
-    assert [push.start for push in pushes[:2]] == [4.0, pytest.approx(5.3)]
-    np.testing.assert_allclose(np.linalg.norm(forces, axis=1), 20.0)
-    np.testing.assert_array_equal(forces[:, 2], 0.0)
-    assert (forces[:, :2].min(axis=0) < -10.0).all()
-    assert (forces[:, :2].max(axis=0) > 10.0).all()
-    slanted = merged(case, {"disturbance": [{"push": 20.0, "start": 4.0}]})
-    assert pushes_of(slanted.disturbance, slanted.seed, 10.0)[0].force[2] != 0.0
-
-
-def test_a_timed_list_is_checked_along_its_whole_way() -> None:
-    case = study_of(FILE).case(FILE)
-    assert checked_list(case, 0).reachable
-    far = merged(case, {"phase": {"circle": {"motion": {"size": (0.6, 0.0)}}}})
-    assert not checked_list(far, 0).reachable
-
-
-def test_a_timed_run_stops_at_twice_the_speed_limits() -> None:
-    study = study_of(FILE)
-    plant = study.build(merged(study.case("ideal"), {})).plant
-    assert isinstance(plant, MujocoPlant)
-    assert plant.speed_stop == 2.0
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (TIMED + DOWN + PRESS + "limit = { speed = 0.1 }\n", r"'press': limit is not for a timed list"),
-        (
-            TIMED + DOWN + PRESS + 'modes = ["motion", "motion", "force", "motion", "motion", "motion"]\n',
-            r"modes is not",
-        ),
-        (TIMED + DOWN.replace("duration = 0.5", "until = { force = 3.0, duration = 1.0 }"), r"by time or by contact"),
-        (TIMED + DOWN + "[[event]]\nchange = { wrench = [0, 0, 1] }\n", r"a timed list has no events"),
-        (TIMED.replace("timed = true", "") + DOWN + PRESS, r"frame is world, a thing of the scene or a pose"),
-        (TIMED.replace("timed = true", "") + DOWN + "arrive = 0.2\n", r"'down': arrive is for a timed list"),
-        (
-            TIMED.replace("timed = true", "") + DOWN + "profile = { times = [0.0], wrench = [[0.0, 0.0, 5.0]] }\n",
-            r"profile is for a timed list",
-        ),
-        (TIMED + DOWN + 'motion = { shape = "stop" }\n', r"no motion before it that could stop"),
-        (
-            TIMED + DOWN + 'motion = { shape = "circle", across = [1, 0, 0], up = [1, 1, 0] }\n',
-            r"must be perpendicular",
-        ),
-        (
-            TIMED
-            + DOWN.replace(
-                "duration = 0.5", 'until = { any = [{ contact = true }, { timeout = 1.0 }] }\nelse = "next"'
-            ),
-            r"contact that is not felt in time is a failure",
-        ),
-    ],
-)
-def test_what_a_list_cannot_say_is_refused(tmp_path: Path, text: str, message: str) -> None:
-    case = case_from(tmp_path, text)
-    with pytest.raises(ConfigError, match=message) as caught:
-        study_of(str(tmp_path / "task.toml")).build(case)
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (
-            DOWN + "wrench = [0, 0, 1]\nprofile = { times = [0], wrench = [[0, 0, 1]] }\n",
-            r"either a wrench or a profile",
-        ),
-        (DOWN + "profile = { times = [0, 1], wrench = [[0, 0, 1]] }\n", r"one wrench a time, got 2 and 1"),
-        (DOWN + "profile = { times = [1, 0], wrench = [[0, 0, 1], [0, 0, 2]] }\n", r"times of a profile increase"),
-        (DOWN + "profile = { times = [0], wrench = [[0, 1]] }\n", r"three or six axes, got 2"),
-        (DOWN + 'motion = { shape = "stop", ramp = 0.0 }\n', r"cannot stop within 0 s"),
-        (DOWN + 'motion = { shape = "zigzag" }\n', r"'lemniscate', 'line', 'circle'"),
-        (DOWN + 'like = "dwn"\n', r"like: there is no phase 'dwn'; valid: 'down' .*did you mean 'down'"),
-    ],
-)
-def test_a_file_that_contradicts_itself_is_refused(tmp_path: Path, text: str, message: str) -> None:
-    with pytest.raises(ConfigError, match=message):
-        case_from(tmp_path, TIMED + text)
-    with pytest.raises(ConfigError, match=r"timed belongs to a task of \[\[phase\]\]"):
-        case_from(tmp_path, 'timed = true\n[path]\npattern = "line"\n')
