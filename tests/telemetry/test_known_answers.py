@@ -19,7 +19,6 @@ from tests.telemetry.ten_samples import K, columns
 PAIR = (columns(K, -2.0 * K), columns(1.0, 0.0))
 """(10, 2) actual and reference: errors k − 1 and −2 k. Σ k = 45, Σ k² = 285, Σ (k − 1)² = 285 − 90 + 10 = 205"""
 
-SETTLING = np.array([4, 4, 5, 7, 9, 8.3, 8.1, 7.9, 8.1, 8.0])
 
 FUNCTIONS: Mapping[str, tuple[Callable[[], Any], Any]] = {
     "between": (lambda: metrics.between(0.1 * K, 0.3, 0.6).nonzero()[0].tolist(), [3, 4, 5]),
