@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,19 @@ def along_an_arc(over: float) -> np.ndarray:
     angle = np.arange(-0.3, 0.3, 1e-4 / (BALL + over))
     local = np.stack([np.sin(angle) * np.cos(0.3), np.sin(angle) * np.sin(0.3), np.cos(angle)], axis=1)
     return ORIGIN + (BALL + over) * local @ R.T
+
+
+def test_a_mesh_goes_to_another_process(shell: MeshSurface) -> None:
+    """The page gets it from the loop; what is compiled is built again there, and answers the same to the last bit."""
+    there = pickle.loads(pickle.dumps(shell))
+    point = ORIGIN + R @ np.array([0.01, 0.02, BALL + 0.004])
+    assert there.described == shell.described
+    for here, sent in zip(shell.near(point), there.near(point), strict=True):
+        np.testing.assert_array_equal(here, sent)
+    far = point + R @ np.array([0.0, 0.0, 1.0])  # the triangles answer, not the samples
+    assert there.near(far).distance == shell.near(far).distance
+    with pytest.raises(TypeError, match="cannot pickle"):  # what would be sent otherwise
+        pickle.dumps(shell.distance.samples)
 
 
 def test_facets_do_not_shake_the_force(shell: MeshSurface, ball: SphereSurface) -> None:

@@ -4,7 +4,9 @@ force."""
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -51,12 +53,24 @@ class SampledDistance:
         places = [
             start + self.step * np.arange(number) for start, number in zip((low - MARGIN).tolist(), count, strict=True)
         ]
-        band = max(_BAND, _COARSE * self.step)
-        values = _sampled(self._mesh, places, band)
-        self.samples = SampledMesh(self._mesh, low - MARGIN, self.step, values, band)
+        self._low, self._band = low - MARGIN, max(_BAND, _COARSE * self.step)
+        self._values = _sampled(self._mesh, places, self._band)
+        self.samples = SampledMesh(self._mesh, self._low, self.step, self._values, self._band)
         """for the contact law"""
-        self.memory = values.nbytes
+
+    @property
+    def memory(self) -> int:
         """bytes"""
+        return self._values.nbytes
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What another process needs to build the same without sampling anew; compiled objects cannot be sent."""
+        return {name: value for name, value in vars(self).items() if name not in ("_mesh", "samples")}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._mesh = TriangleMesh(self.triangles.vertices, self.triangles.corners)
+        self.samples = SampledMesh(self._mesh, self._low, self.step, self._values, self._band)
 
     def nearest(self, points: Array) -> tuple[Array, Array, Array]:
         """Distance (k,) m, negative inside, and place (k, 3) m and outward unit normal (k, 3) of the smoothed surface
