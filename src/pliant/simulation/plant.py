@@ -161,18 +161,20 @@ class MujocoPlant(Plant[World]):
         return world.ticks * self.period
 
     def truth(self, world: World) -> Truth:
-        n, data, sites, bodies = self.robot.n, world.data, self._site_ids, self._body_ids
+        n, data, sites, bodies = self._n, world.data, self._site_ids, self._body_ids
         q = data.qpos[:n].copy()
         return Truth(
             time=world.ticks * self.period,
             q=q,
             v=data.qvel[:n].copy(),
             torque=data.qfrc_applied[:n].copy(),
-            positions=dict(zip(self._sites, data.site_xpos[sites], strict=True)),
-            rotations=dict(zip(self._sites, data.site_xmat[sites].reshape(-1, 3, 3), strict=True)),
+            positions=dict(zip(self._sites, data.site_xpos.take(sites, 0), strict=True)),
+            rotations=dict(zip(self._sites, data.site_xmat.take(sites, 0).reshape(-1, 3, 3), strict=True)),
             wrenches=dict(world.wrenches),
             limit_excess=np.maximum(0.0, np.maximum(self._lower - q, q - self._upper)),
-            objects=dict(zip(self._movable, np.hstack([data.xpos[bodies], data.xquat[bodies]]), strict=True))
+            objects=dict(
+                zip(self._movable, np.hstack([data.xpos.take(bodies, 0), data.xquat.take(bodies, 0)]), strict=True)
+            )
             if self._movable
             else {},
         )
@@ -206,7 +208,8 @@ class MujocoPlant(Plant[World]):
             self.joints,
             self.pushes,
         )
-        self._site_ids, self._body_ids = list(self._sites.values()), list(self._movable.values())
+        self._n = robot.n
+        self._site_ids, self._body_ids = (np.array([*ids.values()], np.intp) for ids in (self._sites, self._movable))
         self.compiled = self._compile() if self.explicit is None and can_look_inside() else None
         """its period as one call; None where contacts are explicit or MuJoCo is not the one that pliant was compiled
         for"""
