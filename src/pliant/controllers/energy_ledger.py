@@ -17,7 +17,7 @@ dissipates is its storage margin: a passive law keeps it at or above zero, excep
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pliant.errors import ShapeError
 from pliant.spatial import Array
@@ -49,6 +49,11 @@ class LedgerChannel:
     size: int
     """0 for a scalar"""
     unit: str
+    place: int | slice = field(init=False, repr=False)
+    """index that picks it out of the output"""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "place", slice(self.start, self.start + self.size) if self.size else self.start)
 
 
 def channel_table(joints: int, tasks: Sequence[tuple[str, int]], account: bool = True) -> dict[str, LedgerChannel]:
@@ -100,10 +105,8 @@ class Diagnostics(Mapping[str, "float | Array"]):
         self._values = values
 
     def __getitem__(self, name: str) -> float | Array:
-        channel = self._table[name]
-        if channel.size == 0:
-            return float(self._values[channel.start])
-        return self._values[channel.start : channel.start + channel.size]
+        place = self._table[name].place
+        return self._values.item(place) if isinstance(place, int) else self._values[place]  # a log reads all of them
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._table)
