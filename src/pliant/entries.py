@@ -74,6 +74,8 @@ class Believed:
     axes: Mapping[str, tuple[Asked, ...]] = field(default_factory=lambda: _NOTHING)
     """phase → what is asked of the three axes of its task, the third along its force; empty: the force alone, and a
     motion beside it"""
+    turns: Mapping[str, tuple[bool, ...]] = field(default_factory=lambda: _NOTHING)
+    """phase of `axes` → which rotations about the three axes of the first frame are held; without an entry all are"""
 
 
 def _always(config: Any) -> bool:

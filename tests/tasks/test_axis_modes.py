@@ -168,7 +168,7 @@ def test_a_predictive_controller_says_which_axes_it_does_not_follow() -> None:
     free = ("free", "free", "free")
     asked = ("force", "free", "motion", "force", "free", "motion")
     (text,) = said(asked, "offset-free-mpc")
-    assert "phase 'stay' (about x, about y)" in text
+    assert "phase 'stay' (about x, about y)" in text  # at home no axis of the tool is the world's
     (text,) = said(asked, "classical-mpc")  # that does not predict from the measured force
     assert "phase 'stay' (x, about x, about y)" in text
     assert said(("force", "free", "motion", *free), "offset-free-mpc") == []

@@ -16,10 +16,6 @@ from tests.tasks.timed_lists import DOWN, PRESS, TIMED
     ("text", "message"),
     [
         (TIMED + DOWN + PRESS + "limit = { speed = 0.1 }\n", r"'press': limit is not for a timed list"),
-        (
-            TIMED + DOWN + PRESS + 'modes = ["motion", "motion", "force", "motion", "motion", "motion"]\n',
-            r"modes is not",
-        ),
         (TIMED + DOWN.replace("duration = 0.5", "until = { force = 3.0, duration = 1.0 }"), r"by time or by contact"),
         (TIMED + DOWN + "[[event]]\nchange = { wrench = [0, 0, 1] }\n", r"a timed list has no events"),
         (TIMED.replace("timed = true", "") + DOWN + PRESS, r"frame is world, a thing of the scene or a pose"),

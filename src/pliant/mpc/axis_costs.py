@@ -24,7 +24,12 @@ _SLACK = (10.0, 1.0)  # N/m and N·s/m of an axis whose force is measured and ne
 _TOUCHING = " touching"
 
 
-def axis_costs(config: MpcConfig, axes: Mapping[str, tuple[Asked, ...]], position: Term) -> dict[str, Any]:
+def axis_costs(
+    config: MpcConfig,
+    axes: Mapping[str, tuple[Asked, ...]],
+    position: Term,
+    turns: Mapping[str, tuple[bool, ...]],
+) -> dict[str, Any]:
     """Changes of a configuration that make each phase ask of its axes what it should.
 
     Every phase has costs for free motion and costs for contact. The contact has three axes where a force is asked for
@@ -34,6 +39,7 @@ def axis_costs(config: MpcConfig, axes: Mapping[str, tuple[Asked, ...]], positio
         config: to be changed.
         axes: phase → what is asked of the three axes of its task.
         position: cost of the position on an axis where it counts.
+        turns: phase → which rotations about the frame's own axes count; without an entry all do.
     """
     asked = [any(one[axis] in _FORCES for one in axes.values()) for axis in range(3)]
     three = any(asked[:2]) and config.predictive_model.force_state
@@ -43,8 +49,11 @@ def axis_costs(config: MpcConfig, axes: Mapping[str, tuple[Asked, ...]], positio
         touching = _counted(position, [one == "motion" for one in told])
         pressed = [one in _FORCES for one in told][slice(None) if three else slice(2, 3)]
         force, rate = (_counted(term, pressed) for term in (config.costs.force, config.costs.force_rate))
-        costs[name] = PhaseCosts(translation=free)
-        costs[name + _TOUCHING] = PhaseCosts(contact=True, translation=touching, force=force, force_rate=rate)
+        turn = _counted(config.costs.rotation, list(turns[name])) if name in turns else None
+        costs[name] = PhaseCosts(translation=free, rotation=turn)
+        costs[name + _TOUCHING] = PhaseCosts(
+            contact=True, translation=touching, rotation=turn, force=force, force_rate=rate
+        )
     return {
         "phases": costs,
         "phase_by": "name",

@@ -64,7 +64,7 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
     )
     if not believed.axes:
         return suited
-    return suited.model_copy(update=axis_costs(suited, believed.axes, _POSITION))
+    return suited.model_copy(update=axis_costs(suited, believed.axes, _POSITION, believed.turns))
 
 
 def _as_stiff(robot: Robot, config: MpcConfig, believed: Believed) -> Contact:

@@ -212,7 +212,9 @@ class PhasedSource(ReferenceSource[PhaseState]):
             if h_dot or h_ddot:
                 velocity = velocity + h_dot * n
                 acceleration = acceleration + 2.0 * h_dot * n_dot + h_ddot * n
-        return TaskReference(self.frame, position, said.rotation, velocity, acceleration, said.wrench, None, said.axes)
+        return TaskReference(
+            self.frame, position, said.rotation, velocity, acceleration, said.wrench, None, said.axes, phase.modes
+        )
 
     def _said(self, state: PhaseState, time: float) -> PhaseSample:
         """The reference of the phase on its own clock; times are rounded, so that an instant is the same in two

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from pliant.axis_modes import AxisModes
 from pliant.errors import ConfigError, ShapeError
 from pliant.references.trajectories.rotation import Turning
 from pliant.references.trajectories.trajectory import Trajectory
@@ -40,6 +41,8 @@ class TaskPhase:
     """(n,) rad, posture; None: that of the source"""
     patience: float = math.inf
     """s, timeout of a phase that ends on contact; the run then fails"""
+    modes: AxisModes | None = None
+    """of each axis; None: force along what the wrench presses, motion elsewhere"""
     within: float = math.inf
     """m, largest distance along the normal between contact and the believed surface, if the next phase is anchored to
     the surface"""

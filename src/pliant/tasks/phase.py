@@ -114,8 +114,8 @@ class Phase(Config):
     press: float | None = quantity(
         None,
         "s",
-        "in which the force is reached once contact is felt; none: where the phase goes towards a contact, what lands"
-        " gently; 0: at once",
+        "in which the force is reached once contact is felt, in a timed list from none at the beginning of the phase;"
+        " none: there at once, else where the phase goes towards a contact what lands gently; 0: at once",
         ge=0.0,
         le=60.0,
     )

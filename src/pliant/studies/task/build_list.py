@@ -34,7 +34,7 @@ from pliant.studies.task.listed import (
     stages_of,
     tracks_of,
 )
-from pliant.studies.task.pressed import asked_of, axes_of, beside_the_axes, pressed_planes, silent_axes
+from pliant.studies.task.pressed import asked_of, axes_of, beside_the_axes, pressed_planes, silent_axes, turns_of
 from pliant.studies.task.sensor import known_load, sensor_of
 from pliant.studies.task.start import start_of
 from pliant.studies.task.timed import level, refuse_untimed, touching
@@ -67,11 +67,12 @@ def listed(case: TaskCase) -> Listed:
     oriented = all(stage.task.rotation is not None for stage in stages)
     surface = pressed_planes(stages, changes_of(case))
     believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None, surface)
+    R = robot.placement(start, frame_of(case))[1] if case.timed else None
+    turns = turns_of(stages, case.phase, R)
+    believed = replace(believed, axes=axes_of(stages, turns), turns=turns)
     if case.timed:
-        surface = None if level(stages) else surface  # nothing is believed of a horizontal one
+        surface = None if level(stages) and not believed.axes else surface  # nothing is believed of a horizontal one
         believed = replace(believed, oriented=True, surface=surface, phases=touching(stages, case.phase))
-    else:
-        believed = replace(believed, axes=axes_of(stages))
     parameters = case.controller_parameters(robot, believed)
     gentle = {} if case.timed else landings(case, robot, stages, start)
     return Listed(robot, believed, parameters, start, longest_of(case), None, gentle)
@@ -83,9 +84,14 @@ def _not_held(case: TaskCase, made: Listed) -> tuple[str, ...]:
     predicts, yields = entry.needs(made.parameters).preview is not None, entry.yields(made.parameters)
     if made.tracked is not None or (yields and not predicts):
         return ()
-    stages = stages_of(case, made.robot, made.robot.placement(made.start, frame_of(case))[1])
-    feels = entry.needs(made.parameters).wrench and not case.timed
-    odd = {one.name: beside_the_axes(one, feels=feels) if predicts else silent_axes(one) for one in stages}
+    R = made.robot.placement(made.start, frame_of(case))[1]
+    stages, feels = stages_of(case, made.robot, R), entry.needs(made.parameters).wrench
+    odd = {
+        one.name: beside_the_axes(one, feels=feels, rotation=R if case.timed else None)
+        if predicts
+        else silent_axes(one)
+        for one in stages
+    }
     told = ", ".join(f"{name!r} ({', '.join(axes)})" for name, axes in odd.items() if axes)
     if not told:
         return ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,10 @@ from pliant.references.stages import Stage, StageChange
 from pliant.signals import TaskReference
 from pliant.spatial import Array
 from pliant.surfaces import FacetSurface, PlaneSurface, SurfaceGeometry
+from pliant.tasks.phase import Phase
 
+_ALIGNED = 0.02
+"""rad, by which an axis of a phase may be off one of the moved frame and still be called the same"""
 _SAME = 1e-9
 """1 − cosine of the angle below which two directions are one"""
 _PLAIN: tuple[Asked, ...] = ("motion", "motion", "press")
@@ -65,22 +68,59 @@ def asked_axes(task: TaskReference) -> tuple[Asked, ...] | None:
     return tuple(force if mode == "force" else mode for mode, force in zip(told, forces, strict=True))
 
 
-def axes_of(stages: Sequence[Stage]) -> dict[str, tuple[Asked, ...]]:
+def axes_of(stages: Sequence[Stage], turns: Mapping[str, tuple[bool, ...]]) -> dict[str, tuple[Asked, ...]]:
     """Phase → what it asks of the three axes of its task; empty where no phase asks for more than one force that
-    presses and a motion beside it."""
+    presses, a motion beside it and an orientation. Args: turns: what single rotations are asked for."""
     found = {stage.name: asked_axes(stage.task) or _PLAIN for stage in stages}
-    return found if any(one not in (_PLAIN, _MOTION) for one in found.values()) else {}
+    told = any(one not in (_PLAIN, _MOTION) for one in found.values()) or turns
+    return found if told else {}
 
 
-def beside_the_axes(stage: Stage, *, feels: bool) -> tuple[str, ...]:
-    """Axes of which a phase asks what weights on the axes of its task cannot say: a moment, a single free rotation,
-    or 0 N and freedom beside a force that is along none of them. Three free rotations are an orientation that is left
-    alone. Args: feels: whether the measured force is predicted; if not, no axis yields to it."""
+def turns_of(
+    stages: Sequence[Stage], phases: Sequence[Phase], rotation: Array | None = None
+) -> dict[str, tuple[bool, ...]]:
+    """Phase → which of the moved frame's own three rotations it holds, for each phase whose modes leave some of them
+    free.
+
+    Args:
+        stages: of a list.
+        phases: the same, as the file says them.
+        rotation: R_world_frame that every phase is given; None: each has its own, or none.
+    """
+    both = zip(stages, phases, strict=True)
+    found = {stage.name: _held_turns(stage.task, rotation) for stage, phase in both if phase.modes is not None}
+    return {name: held for name, held in found.items() if held is not None and not all(held)}
+
+
+def _held_turns(task: TaskReference, rotation: Array | None) -> tuple[bool, ...] | None:
+    """(3,) about the moved frame's axes; None where a phase says nothing of them, or what it leaves free is about
+    axes that are not the frame's own."""
+    R = task.rotation if rotation is None else rotation
+    if task.modes is None or R is None:
+        return None
+    into = R.T @ task.modes.rotation
+    kept = into @ np.diag([float(mode != "free") for mode in task.modes.modes[3:]]) @ into.T
+    held = np.diag(kept) > 0.5
+    if np.abs(kept - np.diag(held.astype(np.float64))).max() > _ALIGNED:
+        return None
+    return tuple(held.tolist())
+
+
+def beside_the_axes(stage: Stage, *, feels: bool, rotation: Array | None = None) -> tuple[str, ...]:
+    """Axes of which a phase asks what weights on the axes of its task cannot say: a moment, a free rotation about what
+    is no axis of the moved frame, or 0 N and freedom beside a force that is along none of them. Three free rotations
+    are an orientation that is left alone.
+
+    Args:
+        stage: of the phase.
+        feels: whether the measured force is predicted; if not, no axis yields to it.
+        rotation: as `turns_of`.
+    """
     told = stage.task.modes
     if told is None:
         return ()
     odd = [place for place in range(3, 6) if told.modes[place] == "force"]
-    if "free" in told.modes[3:] and set(told.modes[3:]) != {"free"}:
+    if "free" in told.modes[3:] and set(told.modes[3:]) != {"free"} and _held_turns(stage.task, rotation) is None:
         odd += [place for place in range(3, 6) if told.modes[place] == "free"]
     turned = asked_axes(stage.task) is None
     odd += [place for place in _silent(told, stage.task.wrench) if place < 3 and (turned or not feels)]

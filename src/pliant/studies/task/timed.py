@@ -24,6 +24,7 @@ from pliant.studies.task.config import TaskCase
 from pliant.studies.task.curves import curve_of
 from pliant.studies.task.listed import frame_of, stages_of
 from pliant.studies.task.phase_axes import axes_of_phases
+from pliant.studies.task.pressed import axes_of, turns_of
 from pliant.tasks.parts import Pose
 from pliant.tasks.phase import Phase
 
@@ -47,7 +48,7 @@ def timed_source(
     if isinstance(case.start, Pose):  # as it was asked for, not as the solver met it
         place, rotation = np.array(case.start.xyz), case.start.rotation
     stages = stages_of(case, robot, rotation)
-    phases = _phases(case, stages, place, in_time)
+    phases = _phases(case, stages, place, rotation, in_time)
     posture = robot.home if case.start is None or isinstance(case.start, Pose) else start
     return PhasedSource(robot, frame_of(case), phases, rotation, lookahead, posture)
 
@@ -66,8 +67,10 @@ def level(stages: Sequence[Stage]) -> bool:
     return all(wrench[2] > 0.0 and not np.any(wrench[:2]) for wrench in pressed)
 
 
-def _phases(case: TaskCase, stages: Sequence[Stage], place: Array, in_time: bool) -> list[TaskPhase]:
-    axes, touches, flat = axes_of_phases(case), touching(stages, case.phase), level(stages)
+def _phases(case: TaskCase, stages: Sequence[Stage], place: Array, held: Array, in_time: bool) -> list[TaskPhase]:
+    """Args: place, held: (3,) m and R_world_frame at the start."""
+    axes, touches = axes_of_phases(case), touching(stages, case.phase)
+    flat = level(stages) and not axes_of(stages, turns_of(stages, case.phase, held))
     found: list[TaskPhase] = []
     where = place  # as it is believed
     for index, (stage, phase) in enumerate(zip(stages, case.phase, strict=True)):
@@ -91,6 +94,7 @@ def _phases(case: TaskCase, stages: Sequence[Stage], place: Array, in_time: bool
                 touches=touches[stage.name],
                 axes=None if flat or rotation is None else Fixed(rotation),
                 patience=phase.longest if felt else math.inf,
+                modes=None if phase.modes is None else stage.task.modes,
             )
         )
         where = stage.task.position
@@ -121,6 +125,8 @@ def _stopping(before: TaskPhase, ramp: float) -> Trajectory:
 
 def _wrench(phase: Phase, R: Array, held: Array) -> Waypoints | None:
     """(6,) N and N·m in the world over the time of a phase. Args: held: (6,) where it has no profile."""
+    if phase.profile is None and phase.press and np.any(held):
+        return Waypoints([0.0, phase.press], [np.zeros(6), held], "ramp")
     if phase.profile is None:
         return Waypoints([0.0], held[None], "step") if np.any(held) else None
     told = [(*row, 0.0, 0.0, 0.0)[:6] for row in phase.profile.wrench]
@@ -133,7 +139,7 @@ def refuse_untimed(case: TaskCase) -> None:
     if case.timed:
         if case.event or case.impedance is not None:
             raise ConfigError("a timed list has no events and no impedance of its own: leave out timed = true")
-        told = ("modes", "limit", "press", "touch")
+        told = ("limit", "touch")
     else:
         told = ("profile", "begin", "via", "arrive")
     for name, phase in zip(case.phase_names(), case.phase, strict=True):
