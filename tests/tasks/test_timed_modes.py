@@ -138,3 +138,25 @@ def test_what_haptic_overshoots_when_a_force_begins_at_once() -> None:
     assert at_once == pytest.approx(34.1, abs=1.0)
     assert built_up == pytest.approx(29.9, abs=1.0)
     assert damped == pytest.approx(27.9, abs=1.0)
+
+
+@pytest.mark.study
+def test_a_force_that_is_built_up_lands_more_gently_on_a_slope() -> None:
+    """20 N across a plane of 25 degrees, from contact on."""
+    s, c = np.sin(np.radians(25.0)), np.cos(np.radians(25.0))
+    table = {"table": {"shape": "plane", "pose": {"xyz": (0.6, 0.0, 0.1 - 0.015 / c), "rpy": (0.0, 25.0, 0.0)}}}
+    frame = {"xyz": (0.6, 0.0, 0.1), "rpy": (0.0, 25.0, 0.0)}
+    start = {"xyz": (0.6 + 0.05 * s, 0.0, 0.1 + 0.05 * c), "rpy": (180.0, -25.0, 180.0)}
+    felt = {"any": [{"contact": True}, {"timeout": 0.8}]}
+    down = {"name": "down", "frame": frame, "target": (0.0, 0.0, -0.004), "until": felt}
+    stay = {"name": "stay", "frame": "contact", "target": (0.0, 0.0, 0.0), "wrench": (20 * s, 0.0, 20 * c)}
+
+    def peak(press: float) -> float:
+        """N."""
+        phases = [down, {**stay, "duration": 1.0, "press": press}]
+        made = run(timed(None, "force-feedback-mpc", scene=table, start=start, locked={"A7": 0.0}, phase=phases))
+        assert made.failure is None
+        return float(np.linalg.norm(made.log["truth/tool/wrench"][:, :3], axis=1).max())
+
+    assert peak(0.3) < 21.0
+    assert peak(0.0) > 30.0
