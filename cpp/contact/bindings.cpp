@@ -1,7 +1,9 @@
 // Python face of the contact law: pliant._contact.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "material_rows.hpp"
 #include "sampled.hpp"
 #include "world.hpp"
 
@@ -146,12 +149,11 @@ class ContactLoop {
   }
 
   std::tuple<int, int> add_pair(int geom_a, int geom_b, const Constants& material, bool hollow, nb::object form,
-                                bool tool) {
+                                bool tool, const std::optional<Constants>& line,
+                                const std::optional<Constants>& places) {
     if (geom_a < 0 || geom_b < 0 || geom_a >= views_.ngeom || geom_b >= views_.ngeom)
       throw std::invalid_argument("a contact pair names a geom that the model does not have");
-    require_size(material.size(), kMaterialSize, "material");
-    const double* m = material.data();
-    const Material made{m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7]};
+    const Graded made = graded(material, line, places);
     const Form* surface = form.is_none()                ? nullptr
                           : nb::isinstance<Solid>(form) ? nb::cast<const Solid&>(form).form()
                                                         : nb::cast<const SampledMesh&>(form).form();
@@ -223,7 +225,7 @@ NB_MODULE(_contact, m) {
   nb::class_<ContactLoop>(m, "ContactLoop")
       .def(nb::init<nb::object, nb::object, uintptr_t, uintptr_t>(), "model"_a, "data"_a, "step1"_a, "step2"_a)
       .def("add_pair", &ContactLoop::add_pair, "geom_a"_a, "geom_b"_a, "material"_a, "hollow"_a = false,
-           "form"_a = nb::none(), "tool"_a = false)
+           "form"_a = nb::none(), "tool"_a = false, "line"_a = nb::none(), "places"_a = nb::none())
       .def_prop_ro("slots", &ContactLoop::slots)
       .def("evaluate", &ContactLoop::evaluate, "dt"_a, "push"_a, "bristles"_a.noconvert(), "force"_a.noconvert(),
            "point"_a.noconvert(), "penetration"_a.noconvert())

@@ -28,6 +28,15 @@ inline Material shared(Material m, double share) {
   return m;
 }
 
+// Every number on the straight line from a to b.
+inline Material between(const Material& a, const Material& b, double share) {
+  Material m{};
+  const auto *from = &a.stiffness, *to = &b.stiffness;
+  double* into = &m.stiffness;
+  for (size_t i = 0; i < sizeof(Material) / sizeof(double); ++i) into[i] = from[i] + share * (to[i] - from[i]);
+  return m;
+}
+
 // Names of the fields in their order, for who fills a Material from a row of numbers.
 constexpr const char* kMaterialNames[] = {
     "stiffness",  "damping",           "transition",           "mu_static",

@@ -40,7 +40,7 @@ bool velocities_sound(const Views& v) {
 
 }  // namespace
 
-int World::add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow, const Form* form,
+int World::add_pair(const Views& views, int geom_a, int geom_b, const Graded& material, bool hollow, const Form* form,
                     bool tool) {
   const ShapeType a = static_cast<ShapeType>(views.geom_type[geom_a]);
   const Shape b = shape_of(views, geom_b, hollow, form);
@@ -64,14 +64,15 @@ bool World::evaluate(const Views& v, double dt, const double* push, double* bris
       const Touch t = pair.tool ? touch_tool(a, b, i) : touch(a, b, i);
       Vec3 force{};
       if (t.penetration > 0.0) {
-        const Material felt = pair.tool ? shared(pair.material, share_of(a.type, b, i)) : pair.material;
+        const Material here = pair.material.at(t.point);
+        const Material felt = pair.tool ? shared(here, share_of(a.type, b, i)) : here;
         const Vec3 velocity = point_velocity(v, body_a, t.point) - point_velocity(v, body_b, t.point);
         const double pressing = normal_force(felt, t.penetration, -dot(t.normal, velocity));
         force = pressing * t.normal + friction_force(felt, t.normal, pressing, velocity, dt, bristle);
         add_force(v, body_a, t.point, force);
         add_force(v, body_b, t.point, -force);
       } else {
-        reset(bristle, pair.material);
+        reset(bristle, pair.material.at(t.point));
       }
       sound = sound && norm(force) < kStrongest && std::isfinite(t.penetration);  // false for NaN
       store(force, out.force + 3 * slot);

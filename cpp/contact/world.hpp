@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "graded.hpp"
 #include "law.hpp"
 #include "shapes.hpp"
 #include "tool.hpp"
@@ -12,7 +13,7 @@ namespace pliant::contact {
 
 struct Pair {
   int geom_a, geom_b;
-  Material material;
+  Graded material;
   bool hollow;       // geom_b's material is outside of it
   const Form* form;  // geom_b's surface, in its axes; null: its own shape
   bool tool;         // geom_a's points share the material
@@ -49,7 +50,7 @@ class World {
   // Returns the first slot of the pair, or -1 if the shapes are not supported in this order. Args: form: the surface
   // of geom_b, which must live as long as the world; null: its own shape. tool: geom_a is a cylinder or a box whose
   // points share the material.
-  int add_pair(const Views& views, int geom_a, int geom_b, const Material& material, bool hollow,
+  int add_pair(const Views& views, int geom_a, int geom_b, const Graded& material, bool hollow,
                const Form* form = nullptr, bool tool = false);
   int slots() const { return slots_; }
   const std::vector<Pair>& pairs() const { return pairs_; }

@@ -117,9 +117,9 @@ inline void init_momentum(MomentumStage* self, std::shared_ptr<Tree> robot, doub
 
 inline FitSettings fit_of(const FilterRow& filter, double touch, double least_force, double least_motion,
                           const std::tuple<double, double>& noise, double correlated, double samples,
-                          double least_samples, double accuracy) {
+                          double least_samples, double accuracy, double drift) {
   return {filter_of(filter), touch,   least_force,   least_motion, {std::get<0>(noise), std::get<1>(noise)},
-          correlated,        samples, least_samples, accuracy};
+          correlated,        samples, least_samples, accuracy,     drift};
 }
 
 using Row = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -158,12 +158,12 @@ inline void bind_stages(nb::module_& m) {
           "__init__",
           [](EnvironmentFit* self, const FilterRow& filter, double touch, double least_force, double least_motion,
              const std::tuple<double, double>& noise, double correlated, double samples, double least_samples,
-             double accuracy) {
-            new (self) EnvironmentFit(
-                fit_of(filter, touch, least_force, least_motion, noise, correlated, samples, least_samples, accuracy));
+             double accuracy, double drift) {
+            new (self) EnvironmentFit(fit_of(filter, touch, least_force, least_motion, noise, correlated, samples,
+                                             least_samples, accuracy, drift));
           },
           nb::kw_only(), "filter"_a, "touch"_a, "least_force"_a, "least_motion"_a, "noise"_a, "correlated"_a,
-          "samples"_a, "least_samples"_a, "accuracy"_a)
+          "samples"_a, "least_samples"_a, "accuracy"_a, "drift"_a = 0.0)
       .def("step", &fit_step, "force"_a, "depth"_a, "rate"_a, "memory"_a.noconvert());
   nb::class_<Stage>(m, "Stage");
   nb::class_<WrenchStage, Stage>(m, "WrenchStage")
@@ -182,10 +182,11 @@ inline void bind_stages(nb::module_& m) {
       .def(
           "__init__",
           [](EnvironmentStage* self, std::shared_ptr<Tree> robot, std::string frame, std::shared_ptr<Surface> surface,
-             const EnvironmentFit& fit, double sliding) {
-            new (self) EnvironmentStage(std::move(robot), std::move(frame), std::move(surface), fit, sliding);
+             const EnvironmentFit& fit, double sliding, double reach, double kept) {
+            new (self)
+                EnvironmentStage(std::move(robot), std::move(frame), std::move(surface), fit, sliding, reach, kept);
           },
-          "robot"_a, "frame"_a, "surface"_a, "fit"_a, "sliding"_a);
+          "robot"_a, "frame"_a, "surface"_a, "fit"_a, "sliding"_a, "reach"_a, "kept"_a);
   nb::class_<MomentumStage, Stage>(m, "MomentumStage")
       .def("__init__", &init_momentum, nb::kw_only(), "robot"_a, "gain"_a, "measured"_a, "surface"_a, "along_normal"_a,
            "frames"_a.none(), "gravity"_a, "coriolis"_a, "late"_a);

@@ -9,13 +9,16 @@
 namespace pliant::estimation {
 
 EnvironmentStage::EnvironmentStage(std::shared_ptr<const Tree> robot, std::string frame,
-                                   std::shared_ptr<const Surface> surface, const EnvironmentFit& fit, double sliding)
+                                   std::shared_ptr<const Surface> surface, const EnvironmentFit& fit, double sliding,
+                                   double reach, double kept)
     : robot_(std::move(robot)),
       name_(std::move(frame)),
       frame_(robot_->frame(name_)),
       surface_(std::move(surface)),
       fit_(fit),
-      sliding_(sliding) {}
+      sliding_(sliding),
+      reach_(reach),
+      kept_(kept) {}
 
 std::unique_ptr<Stage> EnvironmentStage::bound(int, Names& frames) const {
   auto made = std::make_unique<EnvironmentStage>(*this);
@@ -36,8 +39,12 @@ Refusal EnvironmentStage::step(const Reading&, Belief& belief, double* memory) {
     Vec3 normal;
     const double distance = surface_->near(at.pose.p, normal);
     const double rate = -dot(normal, at.velocity);
+    const Environment before = fit.found;
     if (norm(at.velocity + rate * normal) <= sliding_)
       fit_.step(dot(normal, load(belief.wrenches + 6 * row_)), -distance, rate, fit);
+    double* found_at = memory + fit_size;
+    if (std::memcmp(&before, &fit.found, sizeof before) != 0) store(at.pose.p, found_at);
+    if (fit.found.stiffness < kept_ && norm(at.pose.p - load(found_at)) > reach_) fit.known = 0;
     std::memcpy(memory, &fit, sizeof fit);
   }
   if (fit.known != 0) std::memcpy(belief.environment, &fit.found, sizeof fit.found);

@@ -18,10 +18,14 @@ void EnvironmentFit::step(double force, double depth, double rate, FitMemory& me
   if (memory.touching == 0) {
     memory.touching = 1;
     std::copy(value, value + 3, memory.reference);
-    for (int i = 0; i < 3; ++i) memory.first[i] = memory.second[i] = 0;
+    for (int i = 0; i < 3; ++i) memory.first[i] = memory.second[i] = memory.slow[i] = 0;
   }
   for (int i = 0; i < 3; ++i) value[i] -= memory.reference[i];
   settings_.filter.step(value, 3, memory.first, memory.second);
+  for (int i = 0; i < 3; ++i) {
+    memory.slow[i] += settings_.drift * (value[i] - memory.slow[i]);
+    value[i] -= memory.slow[i];
+  }
   if (informative(value, memory)) learn(value, memory);
 }
 

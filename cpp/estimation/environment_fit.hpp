@@ -15,6 +15,7 @@ struct FitSettings {
   double samples;                    // after which an old one counts 1/e
   double least_samples;
   double accuracy;
+  double drift = 0;  // share of a new sample in the slow mean that is taken off; 0: none
 };
 
 // What a fit remembers. The signals are depth, its rate, and force [m, m/s, N].
@@ -22,6 +23,7 @@ struct FitMemory {
   double touching;      // 1: `reference` and the filter hold
   double reference[3];  // signals at first touch
   double first[3], second[3];
+  double slow[3];           // mean that is taken off, after the filter
   double used;              // 1: `accepted` holds
   double accepted[3];       // filtered signals that were used last
   double count;             // samples used since first touch

@@ -74,11 +74,14 @@ class ContactLoop:
         hollow: bool = False,
         form: SampledMesh | Solid | None = None,
         tool: bool = False,
+        line: Array | None = None,
+        places: Array | None = None,
     ) -> tuple[int, int]:
         """Adds a pair of geoms; material (8,) in the order of `ContactMaterial`. Returns its first slot and its number
         of slots. `hollow`: the material of the second, a sphere or a cylinder, is outside of it. `form`: the surface
         of the second, in its axes; None: its own shape. `tool`: the first is a cylinder or a box whose points share
-        the material.
+        the material. `line` (2, 3), a point and a unit direction in the world, and `places` (k,) m along it: between
+        them the material, then (k, 8), is linear, beyond the first and the last one it stays.
 
         Raises ValueError: an unknown geom, or shapes that are not supported in this order.
         """

@@ -71,9 +71,11 @@ class EnvironmentFit:
         samples: float,
         least_samples: float,
         accuracy: float,
+        drift: float = 0.0,
     ) -> None:
         """filter: of all three signals; touch N; least changes N and m; noise: variances of depth (m²) and rate (m²/s²)
-        after the filter; correlated, samples, least_samples: numbers of samples; accuracy: of K, relative."""
+        after the filter; correlated, samples, least_samples: numbers of samples; accuracy: of K, relative; drift: share
+        of a new sample in the slow mean that is taken off, 0: none."""
 
     def step(self, force: float, depth: float, rate: float, memory: Array) -> None:
         """One sample, N, m, m/s; writes over memory (FIT_SIZE,)."""
@@ -121,8 +123,11 @@ class FilteredStage(Stage):
 class EnvironmentStage(Stage):
     """Stiffness and damping of what one frame touches."""
 
-    def __init__(self, robot: Tree, frame: str, surface: Surface, fit: EnvironmentFit, sliding: float) -> None:
-        """sliding: m/s above which nothing is learnt."""
+    def __init__(
+        self, robot: Tree, frame: str, surface: Surface, fit: EnvironmentFit, sliding: float, reach: float, kept: float
+    ) -> None:
+        """sliding: m/s above which nothing is learnt; reach: m from where it was found beyond which one
+        softer than `kept` N/m is dropped."""
 
 class MomentumStage(Stage):
     """The generalised-momentum observer."""

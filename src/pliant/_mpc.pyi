@@ -403,6 +403,7 @@ class ControllerStep:
         averaged: int,
         late: int,
         lead: float,
+        environment_damping: bool = False,
     ) -> None:
         """Takes all that stays the same during a run.
 
@@ -434,13 +435,14 @@ class ControllerStep:
             named_phases: costs by the reference's phase, else by the contact that is felt.
             torque_bounds: whether the limits are bounds of the problem.
             disturbance: take `Estimate.disturbance` out of the torque.
-            environment: let `Estimate.environments` replace the stiffness.
+            environment: let `Estimate.environments` replace the stiffness, where there is one.
             force_integral: [1/s].
             force_shift_max: [N].
             under_way: periods between a reading and the effect of the command that answers to it.
             averaged: torques in the mean that is sent.
             late: periods by which averaging delays a torque.
             lead: [s] from an estimate to the effect of the command that answers to it.
+            environment_damping: let it replace the damping, too, where that is known well enough.
 
         Raises:
             ValueError: sizes that do not belong together.

@@ -179,3 +179,17 @@ def test_bad_input_is_named(lwr4: Robot) -> None:
         EnvironmentEstimator(WrenchEstimator(lwr4), lwr4, "flange", 0.02)
     with pytest.raises(RobotError, match="no frame"):
         EnvironmentEstimator(WrenchEstimator(lwr4), lwr4, "tol", PERIOD)
+
+
+def crossing(fit: EnvironmentFit) -> float:
+    """K that is found while a force of 20 ± 4 N at 15 Hz slides over a table that falls by 50 mm/s."""
+    t, K = np.arange(0.0, 2.0, PERIOD), 1e4
+    p, rate = (20.0 + 4.0 * np.sin(94.0 * t)) / K, 4.0 * 94.0 * np.cos(94.0 * t) / K
+    found = run(fit, zip(K * p, p + 0.05 * t, rate + 0.05, strict=True))[-1].found
+    return 0.0 if found is None else found.stiffness
+
+
+def test_a_drift_of_the_depth_is_taken_off() -> None:
+    config = FitConfig(least_force=0.0, least_motion=0.0, memory=150.0, accuracy=1e9)
+    assert crossing(EnvironmentFit(config.model_copy(update={"drift": 8.0}), PERIOD)) == pytest.approx(1e4, rel=0.03)
+    assert abs(crossing(EnvironmentFit(config, PERIOD)) - 1e4) > 0.3 * 1e4  # control: a tilt looks like a soft table

@@ -33,7 +33,7 @@ LATE = {"sensing_delay": 1e-3, "computation_delay": 3e-3, "averaging": 4e-3}
 CASES: dict[str, MpcConfig] = {
     "force feedback": ForceFeedbackMpc(),
     "everything on": OffsetFreeMpc(),
-    "late and averaged": merged(OffsetFreeMpc(), {"compensation": LATE}),
+    "late and averaged": merged(OffsetFreeMpc(), {"compensation": {**LATE, "environment_damping": True}}),
     "classical, late": merged(ClassicalMpc(), {"compensation": {**LATE, "disturbance": True, "force_integral": 20.0}}),
     "torque feedback, late": merged(TorqueFeedbackMpc(), {"compensation": {**LATE, "disturbance": True}}),
     "feedback between solves": merged(ForceFeedbackMpc(), {"between": "riccati"}),
@@ -65,6 +65,11 @@ def preview(rng: np.random.Generator, time: float, phases: tuple[str, ...], step
     )
 
 
+def _environment(tick: int) -> Environment:
+    """Well known and not, stiff and soft, more and less damped."""
+    return Environment(1e4 * (1.0 + tick % 5), 150.0 + 40.0 * (tick % 3), 10.0, 10.0 if tick % 4 else 60.0)
+
+
 def inputs(lead: float, ticks: int = 120, seed: int = 0) -> Inputs:
     """What a robot may tell: noise, contact that comes and goes, numbers that are none, previews of every kind."""
     rng = np.random.default_rng(seed)
@@ -81,7 +86,7 @@ def inputs(lead: float, ticks: int = 120, seed: int = 0) -> Inputs:
             {"tool": force},
             {"tool": touching} if tick % 11 else {},
             disturbance=2.0 * rng.normal(size=n),
-            environments={"tool": Environment(1e4 * (1.0 + tick % 5), 100.0, 10.0, 10.0)} if tick > 50 else {},
+            environments={"tool": _environment(tick)} if tick > 50 and tick % 13 else {},
         )
         if 90 <= tick < 93 or tick == 100:
             estimate = replace(estimate, **{["q", "v", "torque"][tick % 3]: np.full(n, np.nan)})

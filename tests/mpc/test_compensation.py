@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -130,6 +131,28 @@ def test_the_estimated_stiffness_replaces_the_assumed_one_within_its_range() -> 
     _, state = made.step(believing(_estimate(2e-3), environments=stiff), _reference(2e-3), state)
     assert (state.nodes.stiffness == made.problem.stiffness_max).all()
     assert made.problem.stiffness_max > 1e5
+    _, state = made.step(believing(_estimate(4e-3)), _reference(4e-3), state)  # nothing is known any more
+    assert (state.nodes.stiffness == OffsetFreeMpc().contact.stiffness[0]).all()
+    assert (state.contact.stiffness == OffsetFreeMpc().contact.stiffness[0]).all()
+
+
+@pytest.mark.parametrize(
+    ("used", "environment", "expected"),
+    [
+        (True, Environment(5e3, 80.0, 10.0, 15.0), 80.0),
+        (False, Environment(5e3, 80.0, 10.0, 15.0), 100.0),
+        (True, Environment(5e3, 80.0, 10.0, 17.0), 100.0),  # more than a fifth uncertain
+        (True, Environment(5e3, 80.0, 10.0, math.inf), 100.0),
+        (True, Environment(2e4, 80.0, 10.0, 1.0), 100.0),  # K times 1 ms is a quarter of it
+    ],
+)
+def test_the_estimated_damping_is_used_where_it_is_known(used: bool, environment: Environment, expected: float) -> None:
+    config = merged(OffsetFreeMpc(), {"compensation": {"environment_damping": used}})
+    made = MpcController(ROBOT, config, PERIOD)
+    known = believing(_estimate(), environments={"tool": environment})
+    _, state = made.step(known, _reference(), made.init(_estimate()))
+    assert (state.nodes.damping == expected).all()
+    assert (state.contact.damping == expected).all()
 
 
 def test_torque_bounds_are_those_of_what_is_sent() -> None:

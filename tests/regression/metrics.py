@@ -47,6 +47,7 @@ def rows() -> list[Row]:
     found += [("polishing", "tables-2-3-4", name, 1) for name in MPC[:3]]
     found += [("polishing", "tables-2-3-4-delayed", name, 1) for name in MPC]
     found += [("insert-peg", "insert-peg", name, 0) for name in ("haptic", "offset-free-mpc")]
+    found += [("wipe-hardening", "wipe-hardening", "", 0)]
     return found
 
 

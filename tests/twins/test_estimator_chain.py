@@ -126,9 +126,10 @@ def chains(filtered: bool, normal: Any, contact: Any, compensation: Any, late: i
             wrench=ButterworthTwin(40.0, PERIOD),
         )
     here, there = JointStateFilter(here, 0.2), JointStateTwin(there, 0.2)
-    fit = FitConfig(least_samples=10, accuracy=1e6, noise_depth=1e-7)
-    here = EnvironmentEstimator(here, ROBOT, "tool", PERIOD, normal=normal, config=fit, sliding=2.0)
-    there = EnvironmentTwin(there, ROBOT, "tool", PERIOD, normal=normal, config=fit, sliding=2.0)
+    fit = FitConfig(least_samples=10, accuracy=1e6, noise_depth=1e-7, drift=0.5 if filtered else 0.0)
+    limits = {"sliding": 2.0, "reach": 1e-3 if filtered else None}
+    here = EnvironmentEstimator(here, ROBOT, "tool", PERIOD, normal=normal, config=fit, **limits)
+    there = EnvironmentTwin(there, ROBOT, "tool", PERIOD, normal=normal, config=fit, **limits)
     options: dict[str, Any] = {"contact": contact, "normal": normal, "compensation": compensation}
     options["late_readings"] = late
     return MomentumObserver(here, ROBOT, **options), MomentumTwin(there, ROBOT, **options)

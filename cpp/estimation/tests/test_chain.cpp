@@ -55,7 +55,7 @@ Chain chain_of_all(bool tared) {
   observer.late = 2;
   return Chain({std::make_shared<WrenchStage>(robot, felt), std::make_shared<FilteredStage>(filter, filter, filter),
                 std::make_shared<JointStateStage>(0.1),
-                std::make_shared<EnvironmentStage>(robot, "beyond", table, EnvironmentFit(fit), 10.0),
+                std::make_shared<EnvironmentStage>(robot, "beyond", table, EnvironmentFit(fit), 10.0, 10.0, 1e9),
                 std::make_shared<MomentumStage>(robot, observer)},
                n, {"tip"});
 }

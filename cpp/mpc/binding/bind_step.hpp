@@ -25,7 +25,8 @@ inline void init_step(PyStep* self, const PyChain& chain, const PyModel& model, 
                       double interpolation, double max_gap, double fallback_damping, nb::handle torque_limit,
                       nb::handle R_world_surface, double stiffness_max, bool reference_posture, bool task_velocity,
                       bool named_phases, bool torque_bounds, bool disturbance, bool environment, double force_integral,
-                      double force_shift_max, int under_way, int averaged, int late, double lead) {
+                      double force_shift_max, int under_way, int averaged, int late, double lead,
+                      bool environment_damping) {
   step::Settings s{};
   s.chain = chain.data;
   s.model = model.data;
@@ -44,7 +45,8 @@ inline void init_step(PyStep* self, const PyChain& chain, const PyModel& model, 
   s.named_phases = named_phases;
   s.torque_bounds = torque_bounds;
   s.stiffness_max = stiffness_max;
-  s.compensation = {disturbance, environment, force_integral, force_shift_max, under_way, averaged, late, lead};
+  s.compensation = {disturbance, environment, force_integral, force_shift_max,    under_way,
+                    averaged,    late,        lead,           environment_damping};
   read(torque_limit, "torque_limit", {size_t(s.n())}, s.torque_limit);
   read(R_world_surface, "R_world_surface", {3, 3}, s.surface);
   if (s.N() < 1) throw std::invalid_argument("nodes must be two or more, got " + std::to_string(s.N() + 1));
@@ -114,7 +116,7 @@ inline void bind_step(nb::module_& m) {
            "tolerance"_a, "time_budget"_a.none(), "deadline"_a.none(), "riccati"_a, "interpolation"_a, "max_gap"_a,
            "fallback_damping"_a, "torque_limit"_a, "R_world_surface"_a, "stiffness_max"_a, "reference_posture"_a,
            "task_velocity"_a, "named_phases"_a, "torque_bounds"_a, "disturbance"_a, "environment"_a, "force_integral"_a,
-           "force_shift_max"_a, "under_way"_a, "averaged"_a, "late"_a, "lead"_a)
+           "force_shift_max"_a, "under_way"_a, "averaged"_a, "late"_a, "lead"_a, "environment_damping"_a = false)
       .def("init", &PyStep::init, "time"_a, "q"_a, "v"_a, "torque_sent"_a, nb::rv_policy::take_ownership)
       .def("step", &PyStep::step, "estimate"_a, "reference"_a, "state"_a, "out"_a);
 }

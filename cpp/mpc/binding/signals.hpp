@@ -21,6 +21,8 @@ struct Names {
   PyObject* q = PyUnicode_InternFromString("q");
   PyObject* rotation = PyUnicode_InternFromString("rotation");
   PyObject* stiffness = PyUnicode_InternFromString("stiffness");
+  PyObject* damping = PyUnicode_InternFromString("damping");
+  PyObject* damping_std = PyUnicode_InternFromString("damping_std");
   PyObject* task_rotation = PyUnicode_InternFromString("task_rotation");
   PyObject* tasks = PyUnicode_InternFromString("tasks");
   PyObject* time = PyUnicode_InternFromString("time");
@@ -66,8 +68,11 @@ class ReadEstimate {
     const nb::object contact = found_in(read_attribute(estimate, names().contacts), frame);
     if (contact.is_valid()) data.contact = PyObject_IsTrue(contact.ptr());
     if (!looks.environment) return;
-    if (const nb::object known = found_in(read_attribute(estimate, names().environments), frame); known.is_valid())
+    if (const nb::object known = found_in(read_attribute(estimate, names().environments), frame); known.is_valid()) {
       data.stiffness = nb::cast<double>(read_attribute(known, names().stiffness));
+      data.damping = nb::cast<double>(read_attribute(known, names().damping));
+      data.damping_std = nb::cast<double>(read_attribute(known, names().damping_std));
+    }
   }
 
  private:

@@ -12,11 +12,12 @@ using pliant::Rows;
 struct Estimated {
   double time;  // [s]
   const double *q, *v;
-  const double* torque;       // measured [N·m], with a model that has it in its state
-  const double* wrench;       // (6,) of the contact frame, world axes; null: not estimated
-  const double* disturbance;  // null: not estimated
-  int contact;                // 1: the frame touches, 0: it does not, -1: not estimated
-  double stiffness;           // of the environment [N/m], negative: not estimated
+  const double* torque;         // measured [N·m], with a model that has it in its state
+  const double* wrench;         // (6,) of the contact frame, world axes; null: not estimated
+  const double* disturbance;    // null: not estimated
+  int contact;                  // 1: the frame touches, 0: it does not, -1: not estimated
+  double stiffness;             // of the environment [N/m], negative: not estimated
+  double damping, damping_std;  // of the same [N·s/m]
 };
 
 struct Task {

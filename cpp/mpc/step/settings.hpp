@@ -20,6 +20,7 @@ struct Compensations {
   int averaged;            // torques in the mean that is sent, at least 1
   int late;                // periods by which averaging delays a torque
   double lead;             // [s] from an estimate to the effect of the command that answers to it
+  bool damping = false;    // the estimated one replaces the assumed one, too, where it is known well enough
 };
 
 struct Settings {

@@ -126,12 +126,18 @@ void Controller::shift_forces(State& state) const {
   }
 }
 
-// Lets the estimated stiffness along the normal, as far as the integrator bears it, replace the assumed one.
+// Lets the estimated stiffness along the normal, as far as the integrator bears it, replace the assumed one, and the
+// damping, where its uncertainty and what a force that is one period old does to it (K dt) are at most a fifth of it.
 void Controller::write_environment(const Estimated& e, State& state) const {
-  if (!settings_.compensation.environment || e.stiffness < 0 || settings_.m() == 0) return;
-  const double stiffness = std::min(e.stiffness, settings_.stiffness_max);
-  for (NodeData& node : state.series.nodes) node.stiffness[settings_.normal()] = stiffness;
-  state.memory.contact.stiffness[settings_.normal()] = stiffness;
+  if (!settings_.compensation.environment || settings_.m() == 0) return;
+  const int i = settings_.normal();
+  double K = settings_.constants[0].stiffness[i], B = settings_.constants[0].damping[i];
+  const double off = std::max(e.damping_std, e.stiffness * settings_.tick);
+  if (settings_.compensation.damping && e.stiffness >= 0 && 5 * off <= e.damping) B = e.damping;
+  if (e.stiffness >= 0) K = std::min(e.stiffness, settings_.stiffness_max);
+  for (NodeData& node : state.series.nodes) node.stiffness[i] = K, node.damping[i] = B;
+  state.memory.contact.stiffness[i] = K;
+  state.memory.contact.damping[i] = B;
 }
 
 // Gives each node the weights and the contact of its own phase. A reference without phases has the first one that is

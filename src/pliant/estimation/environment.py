@@ -33,6 +33,9 @@ class EnvironmentEstimator(ChainedEstimator):
         config: parameters of the fit.
         sliding: m/s of tangential speed above which samples are ignored, for a normal that is not known exactly; None:
             no limit.
+        reach: m from where the estimate was found beyond which it is dropped, for a stiffness that changes on the way;
+            None: it is kept.
+        kept: N/m; an estimate at least as stiff is not dropped, for what relies on it is safe with a stiffer one.
 
     Raises:
         RobotError: a frame that the robot does not have.
@@ -49,11 +52,14 @@ class EnvironmentEstimator(ChainedEstimator):
         normal: npt.ArrayLike | SurfaceGeometry = (0.0, 0.0, 1.0),
         config: FitConfig | None = None,
         sliding: float | None = None,
+        reach: float | None = None,
+        kept: float = math.inf,
     ) -> None:
-        self.robot, self.frame, self.sliding = robot, frame, sliding
+        self.robot, self.frame, self.sliding, self.reach, self.kept = robot, frame, sliding, reach, kept
         self.surface = surface_facing(normal)
         self.fit = EnvironmentFit(config or FitConfig(), period)
         robot.frame_id(frame)
-        limit = math.inf if sliding is None else sliding
-        stage = EnvironmentStage(tree_of(robot.model), frame, compiled_surface(self.surface), self.fit.core, limit)
+        slow, near = (math.inf if limit is None else limit for limit in (sliding, reach))
+        surface = compiled_surface(self.surface)
+        stage = EnvironmentStage(tree_of(robot.model), frame, surface, self.fit.core, slow, near, kept)
         super().__init__(stage, inner, frozenset(), environment=frame)

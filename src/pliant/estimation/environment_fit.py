@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -76,6 +77,14 @@ class FitConfig(Config):
     accuracy: float = quantity(
         0.2, "1", "largest relative standard uncertainty of K in an estimate that is returned", gt=0.0, le=1e12
     )
+    drift: float = quantity(
+        0.0,
+        "Hz",
+        "below which changes of force and depth are ignored: while the tool slides, a tilt or another stiffness"
+        " changes the depth without a force; 0: none",
+        ge=0.0,
+        le=1e6,
+    )
 
 
 class EnvironmentFit:
@@ -89,6 +98,10 @@ class EnvironmentFit:
     its standard deviation is given, its variance is subtracted from var p, which removes this bias, and a contact whose
     motion does not exceed the noise (var p < 3 σ_p²) is not identified at all. A force that is δ s older than the
     motion shifts B by −K δ.
+
+    With `drift`, the slow mean of all three (first order, the same for each) is taken off after the filter, so that
+    the rest of F = K p + B ṗ + c holds although c changes slowly: the surface is tilted otherwise than believed, or its
+    stiffness changes along the way. Rest and smooth sliding then tell nothing, and the last estimate stays.
 
     Args:
         config: see there.
@@ -109,6 +122,7 @@ class EnvironmentFit:
             samples=config.memory,
             least_samples=config.least_samples,
             accuracy=config.accuracy,
+            drift=1.0 - math.exp(-2.0 * math.pi * config.drift * period),
         )
 
     def step(self, force: float, depth: float, rate: float, state: FitState) -> FitState:

@@ -26,6 +26,7 @@ def sensing_of(
         joint_memory=joint_memory if keys.joint_memory is None else keys.joint_memory,
         observer_gain=keys.observer_gain,
         acceleration_cutoff=keys.acceleration_cutoff,
+        changing=keys.changing,
         tare=keys.tare,
         surface=surface,
         carried=load[0],

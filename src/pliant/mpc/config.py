@@ -76,7 +76,13 @@ class Compensation(ControllerConfig):
     )
     force_shift_max: float = quantity(20.0, "N", "largest shift of the force reference", gt=0.0)
     environment: bool = Field(
-        default=False, description="let the estimated stiffness of the environment replace contact.stiffness"
+        default=False,
+        description="let the estimated stiffness of the environment replace contact.stiffness, while there is one",
+    )
+    environment_damping: bool = Field(
+        default=False,
+        description="with `environment`: its damping replaces contact.damping, too, where its standard uncertainty and"
+        " K times the period, the effect of a force that is a period late, are at most 20 % of it",
     )
 
     @property

@@ -75,4 +75,5 @@ def kernel_step(problem: MpcProblem, chain: _mpc.Chain, delays: Delays, tick: fl
         averaged=delays.averaged,
         late=delays.late,
         lead=delays.lead,
+        environment_damping=compensation.environment_damping,
     )

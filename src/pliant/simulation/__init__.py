@@ -11,6 +11,7 @@ from pliant.simulation.part import Part
 from pliant.simulation.plant import MujocoPlant
 from pliant.simulation.scene import Ball, Box, Plane, Scene, fixed_part, floor, table, wall
 from pliant.simulation.surface import Surface
+from pliant.simulation.surface_change import SurfaceChange
 from pliant.simulation.world import World
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "Push",
     "Scene",
     "Surface",
+    "SurfaceChange",
     "World",
     "fixed_part",
     "floor",

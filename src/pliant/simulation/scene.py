@@ -146,6 +146,14 @@ class Scene:
             raise ConfigError(
                 f"part {min(self.hollow)!r} is hollow, which MuJoCo's contacts cannot be: set contact = 'explicit'"
             )
+        changing = [thing for thing in self.things if thing.surface.change is not None]
+        if changing and self.contact == "mujoco":
+            raise ConfigError(
+                f"the stiffness of {changing[0].name!r} changes along a line, which that of MuJoCo's contacts cannot:"
+                " set contact = 'explicit'"
+            )
+        if any(not isinstance(thing, Plane | Part) and thing.mass > 0.0 for thing in changing):
+            raise ConfigError(f"{changing[0].name!r} can move: its stiffness cannot change along a line in the world")
         if self.forms and self.contact == "mujoco":
             raise ConfigError(
                 f"part {min(self.forms)!r} is a mesh, a hole or an edge; MuJoCo's contacts know the convex hull of a"

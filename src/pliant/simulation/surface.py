@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pliant.errors import ConfigError
+from pliant.simulation.surface_change import SurfaceChange
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,9 @@ class Surface:
     transition: float = 1e-3
     """m of penetration over which the force of an explicit contact fades in, [HapFIC] sec. III; below it the contact
     is softer than its stiffness"""
+    change: SurfaceChange | None = None
+    """stiffness and damping along a line, in place of the two above; of a thing that cannot move, with the explicit
+    law"""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.stiffness) and self.stiffness > 0.0):
@@ -35,3 +39,10 @@ class Surface:
             value = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value >= 0.0):
                 raise ConfigError(f"contact {name} must not be negative, got {value}")
+
+    def at_places(self) -> tuple[Surface, ...]:
+        """The surface at each place of its change, or itself alone."""
+        if self.change is None:
+            return (self,)
+        pairs = zip(self.change.stiffness, self.change.damping, strict=True)
+        return tuple(replace(self, stiffness=K, damping=D, change=None) for K, D in pairs)

@@ -53,6 +53,11 @@ class Estimation(Config):
         gt=0.0,
         le=1e4,
     )
+    changing: bool = Field(
+        default=False,
+        description="the stiffness of what is pressed may change on the way: it is estimated from changes of force and"
+        " depth faster than 8 Hz, while the tool slides, too; else from all of them, below 0.02 m/s along the surface",
+    )
     tare: Literal["weight", "bias"] | None = Field(
         default=None,
         description="the unexplained reading of the force sensor in the first 20 ms is taken as an unknown weight or as"

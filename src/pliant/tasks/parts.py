@@ -15,6 +15,7 @@ from pliant.references.surface_task import SurfaceTaskSettings
 from pliant.references.toolpaths.toolpath import PathMotion
 from pliant.robots.tool import Tool, ToolShape
 from pliant.spatial import Array, rpy
+from pliant.tasks.along import AlongSurface
 from pliant.tasks.draws import Drawn, bounds
 from pliant.tasks.thing_truth import ThingTruth
 
@@ -191,8 +192,10 @@ class TruthConfig(Config):
     axis: Literal["random"] | Vector = Field(
         default="random", description="of the tilt: a direction in the world, or a random one across the normal"
     )
-    stiffness: Drawn | None = quantity(None, "N/m", "none: as believed")
-    damping: Drawn | None = quantity(None, "N·s/m", "none: as believed")
+    stiffness: Drawn | AlongSurface | None = quantity(
+        None, "N/m", "none: as believed; one that changes along the surface, too, with the explicit contact law"
+    )
+    damping: Drawn | AlongSurface | None = quantity(None, "N·s/m", "none: as believed; or along the surface, too")
     friction: Drawn | None = quantity(None, "1", "none: as believed")
     things: dict[str, ThingTruth] = Field(
         default={}, description="name of a thing of the scene → how it differs, with [[phase]]"

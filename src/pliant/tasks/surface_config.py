@@ -50,6 +50,9 @@ class SurfaceConfig(Config):
     )
     stiffness: float = quantity(2e4, "N/m", "of the contact", gt=0.0, le=1e7)
     damping: float = quantity(1e2, "N·s/m", "of the contact", ge=0.0, le=1e5)
+    transition: float = quantity(
+        1e-3, "m", "of depth over which the force fades in, with the explicit contact law", ge=0.0, le=0.1
+    )
     friction: float = quantity(0.25, "1", "Coulomb coefficient", ge=0.0, le=5.0)
 
     @model_validator(mode="after")

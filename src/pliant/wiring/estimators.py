@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -32,6 +33,12 @@ from pliant.surfaces import PlaneSurface
 _JOINT_MEMORY = 0.3  # s
 _SLIDING = 0.02  # m/s; faster than that, an unknown tilt looks like a soft table
 _FIT_CUTOFF = 30.0  # Hz
+_REACH = 0.01  # m; as far as a soft estimate holds where the stiffness changes
+_CHANGING = FitConfig(
+    cutoff=_FIT_CUTOFF, drift=8.0, memory=150.0, noise_depth=2.3e-5, least_force=0.0, least_motion=0.0
+)
+"""for a stiffness that changes: all samples count, so that old ones are forgotten with time; the noise is 6 µm after
+both filters, as measured after the joint state filter on an arm with the flaws of [FFMPC] sec. VI-B"""
 
 
 Load = tuple[Mapping[str, CarriedMass], Mapping[str, str]]
@@ -62,6 +69,8 @@ class SensorFilters:
     """sensor → the frame beyond it that touches"""
     acceleration_cutoff: float = JointAcceleration.cutoff
     """Hz, of the joint accelerations with which what a sensor carries is taken off"""
+    changing: bool = False
+    """whether the stiffness may change on the way, and is estimated while the tool slides, too"""
     tare: Literal["weight", "bias"] | None = None
     """taring of unknown loads of the force sensor at the start; None: no taring"""
     surface: SurfaceFitConfig | None = None
@@ -99,8 +108,14 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Senso
         felt = SurfaceEstimator(felt, robot, believed.presses, believed.surface, sensing.surface)
     if needs.environment:
         frame = believed.presses or believed.frames[0]
-        fit = FitConfig(cutoff=_FIT_CUTOFF)
-        felt = EnvironmentEstimator(felt, robot, frame, period, normal=normal, config=fit, sliding=_SLIDING)
+        if sensing.changing:
+            kept = math.inf if believed.stiffness is None else believed.stiffness
+            felt = EnvironmentEstimator(
+                felt, robot, frame, period, normal=normal, config=_CHANGING, reach=_REACH, kept=kept
+            )
+        else:
+            fit = FitConfig(cutoff=_FIT_CUTOFF)
+            felt = EnvironmentEstimator(felt, robot, frame, period, normal=normal, config=fit, sliding=_SLIDING)
     if needs.disturbance == "none":
         return felt
     return MomentumObserver(

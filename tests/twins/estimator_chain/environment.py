@@ -15,6 +15,7 @@ from pliant.frozen import changed
 from pliant.interfaces import Estimator
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
+from pliant.spatial import Array
 from pliant.surfaces import PlaneSurface, SurfaceGeometry
 from tests.twins.estimator_chain.environment_fit import FitState, FitTwin
 
@@ -25,6 +26,8 @@ class EnvironmentState:
 
     inner: Any
     fit: FitState
+    found_at: Array | None = None
+    """(3,) m, where the frame was when the estimate was found"""
 
 
 class EnvironmentTwin(Estimator[EnvironmentState]):
@@ -40,8 +43,11 @@ class EnvironmentTwin(Estimator[EnvironmentState]):
         normal: npt.ArrayLike | SurfaceGeometry = (0.0, 0.0, 1.0),
         config: FitConfig | None = None,
         sliding: float | None = None,
+        reach: float | None = None,
+        kept: float = math.inf,
     ) -> None:
         self.inner, self.robot, self.frame, self.sliding = inner, robot, frame, sliding
+        self.reach, self.kept = math.inf if reach is None else reach, kept
         self.surface = normal if isinstance(normal, SurfaceGeometry) else PlaneSurface.facing(normal)
         self.fit = FitTwin(config or FitConfig(), period)
         self._frame = robot.frame_id(frame)
@@ -53,7 +59,7 @@ class EnvironmentTwin(Estimator[EnvironmentState]):
     def step(self, measurement: Measurement, state: EnvironmentState) -> tuple[Estimate, EnvironmentState]:
         estimate, inner = self.inner.step(measurement, state.inner)
         wrench = estimate.wrenches.get(self.frame)
-        fit = state.fit
+        fit, found_at = state.fit, state.found_at
         if wrench is not None:
             model, data = self.robot.model, self._data
             pin.forwardKinematics(model, data, estimate.q, estimate.v)
@@ -66,6 +72,11 @@ class EnvironmentTwin(Estimator[EnvironmentState]):
             sliding = math.sqrt(across.dot(across))
             if self.sliding is None or sliding <= self.sliding:
                 fit = self.fit.step(float(normal @ np.asarray(wrench[:3])), -distance, rate, fit)
+            if fit.found is not state.fit.found:
+                found_at = np.array(position)
+            soft = fit.found is not None and fit.found.stiffness < self.kept
+            if soft and found_at is not None and np.linalg.norm(position - found_at) > self.reach:
+                fit = changed(fit, found=None)
         if fit.found is not None:
             estimate = changed(estimate, environments={**estimate.environments, self.frame: fit.found})
-        return estimate, EnvironmentState(inner, fit)
+        return estimate, EnvironmentState(inner, fit, found_at)

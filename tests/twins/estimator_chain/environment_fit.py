@@ -21,6 +21,8 @@ class FitState:
     reference: Array | None = None
     """(3,) signals at first touch, taken off all others against rounding; None out of contact"""
     filter: Memory | None = None
+    slow: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) slow mean, taken off"""
     accepted: Array | None = None
     """(3,) filtered signals that were used last"""
     count: int = 0
@@ -39,6 +41,7 @@ class FitTwin:
     def __init__(self, config: FitConfig, period: float) -> None:
         self.config = config
         self._filter = ButterworthTwin(config.cutoff, period)
+        self._drift = 1.0 - math.exp(-2.0 * math.pi * config.drift * period)
         passed = min(1.0, 2.22 * config.cutoff * period)  # share of white noise's variance: noise bandwidth 1.11 f_c
         self._correlated = 1.0 / passed
         """neighbouring samples that share their noise after the filter"""
@@ -55,7 +58,9 @@ class FitTwin:
         assert state.reference is not None
         assert state.filter is not None
         value, memory = self._filter.step(signals - state.reference, state.filter)
-        state = changed(state, filter=memory)
+        slow = state.slow + self._drift * (value - state.slow)
+        value = value - slow
+        state = changed(state, filter=memory, slow=slow)
         return self._learn(value, state) if self._informative(value, state) else state
 
     def _informative(self, value: Array, state: FitState) -> bool:

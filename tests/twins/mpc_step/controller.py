@@ -16,7 +16,7 @@ from pliant.mpc.controller import MpcController
 from pliant.mpc.horizon import HorizonReference
 from pliant.mpc.kernel import kernel_model, kernel_solver
 from pliant.mpc.make_problem import problem_from_robot
-from pliant.mpc.problem import MpcProblem
+from pliant.mpc.problem import MpcProblem, filled
 from pliant.robot import Robot
 from pliant.signals import Command, Estimate, Reference
 from pliant.spatial import Array, all_finite, clamp
@@ -33,7 +33,7 @@ class TwinController(Controller[MpcState]):
     """What `MpcController` does, in Python: the same arguments, needs, channels and errors."""
 
     def __init__(self, robot: Robot, config: MpcConfig, period: float | None = None) -> None:
-        self.robot, self.config = robot, config
+        self.robot, self.config, self.tick = robot, config, period or config.period
         self.problem: MpcProblem = problem_from_robot(robot, config)
         self.chain = chain_from_robot(robot, config.frame, config.contact.frame)
         self.delays = delays_of(config.compensation, period or config.period)
@@ -147,13 +147,20 @@ class TwinController(Controller[MpcState]):
         self._write_anchor(state, horizon, x)
 
     def _write_environment(self, estimate: Estimate, state: MpcState) -> None:
-        """Lets the estimated stiffness along the normal, as far as the integrator bears it, replace the assumed one."""
-        believed = estimate.environments.get(self.problem.contact_frame)
-        if not self.config.compensation.environment or believed is None:
+        """Lets the estimated stiffness along the normal, as far as the integrator bears it, replace the assumed one,
+        and the damping, where it is known well enough."""
+        if not self.config.compensation.environment or self.problem.m == 0:
             return
-        normal = 0 if self.problem.m == 1 else 2
+        normal, contact = 0 if self.problem.m == 1 else 2, self.config.contact
+        K, B = (float(filled(values, self.problem.m)[normal]) for values in (contact.stiffness, contact.damping))
+        believed = estimate.environments.get(self.problem.contact_frame)
+        if believed is not None:
+            K = min(believed.stiffness, self.problem.stiffness_max)
+            off = max(believed.damping_std, believed.stiffness * self.tick)
+            if self.config.compensation.environment_damping and off <= 0.2 * believed.damping:
+                B = believed.damping
         for nodes in (state.nodes, self.compensator.contact):
-            nodes.stiffness[:, normal] = min(believed.stiffness, self.problem.stiffness_max)
+            nodes.stiffness[:, normal], nodes.damping[:, normal] = K, B
 
     def _touches(self, estimate: Estimate, state: MpcState) -> bool:
         """Whether there is contact now. A rigid one also needs a phase that has it."""

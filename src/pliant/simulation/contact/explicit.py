@@ -15,7 +15,7 @@ import numpy as np
 
 from pliant._contact import BRISTLE_SIZE, ContactLoop, SampledMesh, Solid
 from pliant.errors import ConfigError, RunFailedError
-from pliant.simulation.contact.material import ContactMaterial, require_stable_step
+from pliant.simulation.contact.material import ContactMaterial, GradedMaterial, require_stable_step
 from pliant.simulation.mujoco_library import HALF_STEPS, addresses
 from pliant.simulation.surface import Surface
 from pliant.spatial import Array, cross
@@ -35,6 +35,8 @@ class ContactPair:
     """the surface of the second, in its axes; None: its own shape"""
     tool: bool = False
     """the first is a tool that is not a sphere: its contact points share the material"""
+    graded: GradedMaterial | None = None
+    """in place of `material`, where it changes along a line"""
 
 
 @dataclass(slots=True)
@@ -129,7 +131,11 @@ class ExplicitContacts:
 
     def _add(self, loop: ContactLoop, geom_a: int, geom_b: int, pair: ContactPair) -> slice:
         try:
-            first, count = loop.add_pair(geom_a, geom_b, pair.material.row(), pair.hollow, pair.form, pair.tool)
+            if pair.graded is None:
+                first, count = loop.add_pair(geom_a, geom_b, pair.material.row(), pair.hollow, pair.form, pair.tool)
+            else:
+                row, line, places = pair.graded.rows()
+                first, count = loop.add_pair(geom_a, geom_b, row, pair.hollow, pair.form, pair.tool, line, places)
         except ValueError as error:
             raise ConfigError(
                 f"no explicit contact law between {pair.geom_a!r} and {pair.geom_b!r}; valid: a sphere, capsule, box or"
@@ -178,9 +184,11 @@ def explicit_contacts(
         geom = model.geom(a).id
         inverse_mass = _tool_inverse_mass(model, data, geom) if a in tools else _inverse_mass(model, data, geom, True)
         inverse_mass += _inverse_mass(model, data, model.geom(b).id, presses=False)
-        material = ContactMaterial.of(surface, inverse_mass)
-        require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
-        made.append(ContactPair(a, b, material, b in hollow, (forms or {}).get(b), a in tools))
+        materials = [ContactMaterial.of(one, inverse_mass) for one in surface.at_places()]
+        for material in materials:
+            require_stable_step(f"{a}|{b}", material, inverse_mass, float(model.opt.timestep))
+        graded = None if surface.change is None else GradedMaterial(surface.change, tuple(materials))
+        made.append(ContactPair(a, b, materials[0], b in hollow, (forms or {}).get(b), a in tools, graded))
     return ExplicitContacts(model, made)
 
 

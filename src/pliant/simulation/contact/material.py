@@ -8,6 +8,7 @@ import numpy as np
 
 from pliant.errors import ConfigError
 from pliant.simulation.surface import Surface
+from pliant.simulation.surface_change import SurfaceChange
 from pliant.spatial import Array
 
 _CRITICAL_VELOCITY = 1e-3  # m/s, [HapFIC] sec. III
@@ -70,6 +71,20 @@ class ContactMaterial:
                 self.tangential_damping,
             ]
         )
+
+
+@dataclass(frozen=True)
+class GradedMaterial:
+    """The materials at the places of a line."""
+
+    change: SurfaceChange
+    materials: tuple[ContactMaterial, ...]
+    """at each place"""
+
+    def rows(self) -> tuple[Array, Array, Array]:
+        """Materials (k, 8), line (2, 3) and places (k,) for the compiled law."""
+        line = np.array([self.change.origin, self.change.direction])
+        return np.stack([material.row() for material in self.materials]), line, np.array(self.change.places)
 
 
 def require_stable_step(name: str, material: ContactMaterial, inverse_mass: float, dt: float) -> None:

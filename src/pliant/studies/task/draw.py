@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.experiments.base import Experiment, Result
+from pliant.experiments.drawn import simulated
 from pliant.simulation import ImperfectPlant, MujocoPlant
 from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
 from pliant.spatial import Array
@@ -39,7 +40,7 @@ def run_figures(case: TaskCase, experiment: Experiment, log: Log, signals: TaskS
     follows = np.count_nonzero(signals.following) > 2 * _EVERY
     figures = {
         "scene": _moments(case, experiment, log, signals),
-        "history": _history(case, log, signals),
+        "history": _history(case, experiment, log, signals),
         "map": _map(case, signals) if follows else None,
     }
     return saved_figures(case, folder, figures)
@@ -65,7 +66,7 @@ def comparison(results: Sequence[Result], folder: Path) -> list[Path]:
     return files
 
 
-def _history(case: TaskCase, log: Log, signals: TaskSignals) -> Figure:
+def _history(case: TaskCase, experiment: Experiment, log: Log, signals: TaskSignals) -> Figure:
     time = signals.time
     error = np.where(signals.following, signals.force - signals.wanted, np.nan)
     panels = [
@@ -76,7 +77,25 @@ def _history(case: TaskCase, log: Log, signals: TaskSignals) -> Figure:
         Panel("distance from the path, mm", [Curve("", time, 1e3 * signals.beside)]),
         Panel("largest torque, % of its limit", [Curve("", time, 100.0 * signals.limit.max(axis=1))]),
     ]
+    stiffness = _stiffness(case, experiment, log, signals.time)
+    panels += [Panel("stiffness, kN/m", stiffness)] if stiffness else []
     return time_series(panels, title=_title(case), phases=log.phases())
+
+
+def _stiffness(case: TaskCase, experiment: Experiment, log: Log, time: Array) -> list[Curve]:
+    """Of the surface where the tool is, and as it is estimated, while it is; none: it is the same everywhere."""
+    plant, frame = simulated(experiment.plant), case.tool.frame
+    change = None if plant is None else next((one.surface.change for one in plant.scene.things), None)
+    if change is None:
+        return []
+    along = (log[f"truth/{frame}/position"] - np.array(change.origin)) @ np.array(change.direction)
+    curves = [Curve("true", time, 1e-3 * np.interp(along, change.places, change.stiffness))]
+    name = f"estimate/{frame}/stiffness"
+    if name in log.channels:
+        known = np.full(len(time), np.nan)
+        known[np.searchsorted(time, log.time(name) - 1e-9)] = 1e-3 * log[name].ravel()
+        curves.append(Curve("estimated", time, known))
+    return curves
 
 
 def _map(case: TaskCase, signals: TaskSignals) -> Figure:

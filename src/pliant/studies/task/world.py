@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from pliant.experiments.pushes import pushes_of
 from pliant.interfaces import Plant
 from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.robot import Robot
-from pliant.simulation import Imperfections, ImperfectPlant, JointEffects, MujocoPlant, Scene
+from pliant.simulation import Imperfections, ImperfectPlant, JointEffects, MujocoPlant, Scene, SurfaceChange
 from pliant.simulation import Surface as Touch
 from pliant.simulation.plant import SPEED_STOP
 from pliant.simulation.scene import fixed_part
@@ -25,6 +25,7 @@ from pliant.studies.task.config import TaskCase
 from pliant.studies.task.geometry import robot_of
 from pliant.studies.task.sensor import sensor_of
 from pliant.surfaces import SurfaceGeometry
+from pliant.tasks.along import AlongSurface
 from pliant.tasks.draws import Drawn, drawn
 
 _IMPERFECTIONS = {
@@ -52,11 +53,42 @@ def true_surface(case: TaskCase, believed: SurfaceGeometry, path: Toolpath) -> T
     axis = unit(axis, "truth.axis")
     shift = _draw(case, "shift", truth.shift) * normal
     turn = math.radians(_draw(case, "tilt", truth.tilt)) * axis
-    feel = {
-        name: getattr(case.surface, name) if value is None else max(_draw(case, name, value), 0.0)
-        for name, value in (("stiffness", truth.stiffness), ("damping", truth.damping), ("friction", truth.friction))
+    moved = believed.moved(shift, turn, pivot)
+    return TrueSurface(moved, feel_of(case, moved))
+
+
+def feel_of(case: TaskCase, geometry: SurfaceGeometry) -> Touch:
+    """Contact properties of the true surface, drawn by the seed or along an axis of its frame.
+
+    Raises:
+        ConfigError: stiffness and damping that change along two different axes.
+    """
+    truth, changing = case.truth, dict[str, AlongSurface]()
+    drawn_ones = ("stiffness", "damping", "friction")
+    feel = {name: float(getattr(case.surface, name)) for name in (*drawn_ones, "transition")}
+    for name in drawn_ones:
+        value = getattr(truth, name)
+        if isinstance(value, AlongSurface):
+            changing[name] = value
+        elif value is not None:
+            feel[name] = max(_draw(case, name, value), 0.0)
+    same = Touch(feel["stiffness"], feel["damping"], feel["friction"], transition=feel["transition"])
+    if not changing:
+        return same
+    axes = {value.along for value in changing.values()}
+    if len(axes) > 1:
+        raise ConfigError(f"truth.stiffness and truth.damping change along one axis, got {sorted(axes)}")
+    places = sorted({place for value in changing.values() for place in value.places})
+    at = {
+        name: np.interp(places, changing[name].places, changing[name].numbers)
+        if name in changing
+        else np.full(len(places), feel[name])
+        for name in ("stiffness", "damping")
     }
-    return TrueSurface(believed.moved(shift, turn, pivot), Touch(**feel))
+    o, d = geometry.origin.tolist(), geometry.rotation[:, "xyz".index(axes.pop())].tolist()
+    K, D = (tuple(map(float, at[name])) for name in ("stiffness", "damping"))
+    change = SurfaceChange((o[0], o[1], o[2]), (d[0], d[1], d[2]), tuple(places), K, D)
+    return replace(same, stiffness=K[0], damping=D[0], change=change)
 
 
 def imperfections_of(case: TaskCase) -> Imperfections:
