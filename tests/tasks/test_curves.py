@@ -10,7 +10,7 @@ import pytest
 from pliant import run
 from pliant.errors import ConfigError
 from pliant.interfaces import Lookahead
-from pliant.references.planners.curves import StageCurve
+from pliant.references.planners.curves import PhaseCurve
 from pliant.references.trajectories.shapes import circle
 from pliant.references.trajectories.trajectory import Hold
 from pliant.signals import Estimate, Reference
@@ -87,7 +87,7 @@ def test_the_check_of_reach_goes_round_as_well() -> None:
 
 
 def test_a_curve_fades_smoothly() -> None:
-    curve = StageCurve(circle(np.zeros(3), 0.1, 3.0, np.eye(3)[0], np.eye(3)[1]), 0.4)
+    curve = PhaseCurve(circle(np.zeros(3), 0.1, 3.0, np.eye(3)[0], np.eye(3)[1]), 0.4)
     step = 1e-5
     for after in (0.1, 0.2, 0.3):
         before, now, then = (curve.at(1.0 + after + s, after + s) for s in (-step, 0.0, step))
@@ -95,7 +95,7 @@ def test_a_curve_fades_smoothly() -> None:
         np.testing.assert_allclose((then.rate - before.rate) / (2.0 * step), now.acceleration, atol=1e-7)
     assert not np.any(curve.at(1.4, 0.4).value)
     with pytest.raises(ConfigError, match="gone within more than 0 s"):
-        StageCurve(Hold(np.zeros(3)), 0.0)
+        PhaseCurve(Hold(np.zeros(3)), 0.0)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from pliant.signals import TaskReference
 from pliant.spatial import exp3
 from pliant.studies.task.build_list import listed
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.listed import frame_of, stages_of
+from pliant.studies.task.listed import frame_of, placed_phases_of
 from pliant.studies.task.measure_list import on_silent_axes, within
 from pliant.studies.task.study import study_of
 from pliant.studies.task.true_scene import true_scene
@@ -62,8 +62,8 @@ def test_each_value_is_one_draw_a_seed_and_a_random_axis_lies_across() -> None:
 def test_nothing_that_a_controller_is_told_depends_on_where_the_hole_is() -> None:
     def told(case: TaskCase) -> tuple[Any, ...]:
         made = listed(case)
-        stages = stages_of(case, made.robot, made.robot.placement(made.start, frame_of(case))[1])
-        return made.parameters, made.duration, [stage.task.position.tolist() for stage in stages]
+        all_placed = placed_phases_of(case, made.robot, made.robot.placement(made.start, frame_of(case))[1])
+        return made.parameters, made.duration, [placed.task.position.tolist() for placed in all_placed]
 
     here, there = peg(), peg(shift=SHIFT, tilt=3.0, stiffness=5e4)
     assert told(here) == told(there)

@@ -12,14 +12,14 @@ from pliant import run
 from pliant.errors import ConfigError
 from pliant.experiments.choice import chosen
 from pliant.experiments.origins import origins
-from pliant.references.stages import Ending, Stage, Stages
+from pliant.references.placed_phases import Ending, PlacedPhase, PlacedPhases
 from pliant.signals import TaskReference
 from pliant.studies.task.build_list import build_list, listed
 from pliant.studies.task.config import TaskCase, case_of
 from pliant.studies.task.landing import Touch, gentle
 from pliant.studies.task.study import of_value
 from pliant.tasks.task import Task
-from tests.references.test_stages import DOWN, HERE, ROBOT, estimate, played
+from tests.references.test_placed_phases import DOWN, HERE, ROBOT, estimate, played
 from tests.tasks.tilted import tilted_task
 
 FORCE = 25.0  # N
@@ -79,15 +79,17 @@ def test_a_force_built_up_within_a_period_leaves_no_swing() -> None:
 
 
 def built_up(touching: list[bool], press: float = 0.1) -> list[float]:
-    """N of the reference, a tenth of `press` apart, of a stage whose force is built up."""
+    """N of the reference, a tenth of `press` apart, of a phase whose force is built up."""
     task = TaskReference("foot", HERE, wrench=DOWN)
-    source = Stages(ROBOT, [Stage("before", TaskReference("foot", HERE), (Ending(0.5),)), _landing(task, press)])
+    source = PlacedPhases(
+        ROBOT, [PlacedPhase("before", TaskReference("foot", HERE), (Ending(0.5),)), _landing(task, press)]
+    )
     ticks = [estimate(0.0), *(estimate(0.5 + 0.1 * press * k, touches) for k, touches in enumerate(touching))]
     return [float(reference.tasks[0].wrench[2]) for reference in played(source, *ticks)[1:]]
 
 
-def _landing(task: TaskReference, press: float) -> Stage:
-    return Stage("down", task, (Ending(9.0),), press)
+def _landing(task: TaskReference, press: float) -> PlacedPhase:
+    return PlacedPhase("down", task, (Ending(9.0),), press)
 
 
 def test_a_force_is_built_up_from_the_first_contact_on() -> None:
@@ -137,8 +139,8 @@ def test_what_the_file_says_is_not_replaced() -> None:
     assert slower.speed < 0.5 * landing.speed
     said = {**_case().phase[0].model_dump(by_alias=True), "limit": {"speed": 0.15}, "press": 0.0}
     source: Any = build_list(_case(phase=[said])).source
-    stage = source.inner.stages[0]
-    assert (stage.task.modes.speed, stage.press) == (0.15, 0.0)
+    placed = source.inner.phases[0]
+    assert (placed.task.modes.speed, placed.press) == (0.15, 0.0)
 
 
 def test_it_is_said_what_lands_gently() -> None:

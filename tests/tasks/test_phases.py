@@ -13,7 +13,7 @@ from pliant.experiments.registry import get_study
 from pliant.experiments.runner import run_case
 from pliant.robot import Robot
 from pliant.studies.task.build_list import listed
-from pliant.studies.task.listed import changes_of, scene_of, stages_of
+from pliant.studies.task.listed import changes_of, placed_phases_of, scene_of
 from pliant.studies.task.measure_list import measured_list
 from pliant.studies.task.study import study_of
 from tests.tasks.lists import FIRST, PHASES, case_from, recorded
@@ -133,11 +133,11 @@ def test_numbers_are_in_the_axes_of_the_phases_frame(tmp_path: Path) -> None:
     frame = "frame = { xyz = [0.1, 0.0, 0.0], rpy = [0, 0, 90] }\n"
     text = FIRST.replace("[0.1, 0.0, 0.017]", "[0.02, 0.0, 0.1]").replace("[0, 0, 20]", "[7, 0, 0]")
     case = case_from(tmp_path, PHASES + text + frame + "duration = 1.0\n[[phase]]\nduration = 1.0\n")
-    first, second = stages_of(case, Robot.load("leg3"), np.eye(3))
-    for stage in (first, second):
-        np.testing.assert_allclose(stage.task.position, [0.1, 0.02, 0.1], atol=1e-12)
-        np.testing.assert_allclose(stage.task.wrench[:3], [0.0, 7.0, 0.0], atol=1e-12)
-        assert stage.task.rotation is None
+    first, second = placed_phases_of(case, Robot.load("leg3"), np.eye(3))
+    for placed in (first, second):
+        np.testing.assert_allclose(placed.task.position, [0.1, 0.02, 0.1], atol=1e-12)
+        np.testing.assert_allclose(placed.task.wrench[:3], [0.0, 7.0, 0.0], atol=1e-12)
+        assert placed.task.rotation is None
 
 
 def test_events_are_drawn_by_the_seed_and_are_for_the_controller_that_they_name() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pliant.references.force_axes import task_axes
-from pliant.references.stages import Stage
+from pliant.references.placed_phases import PlacedPhase
 from pliant.spatial import exp3
 from pliant.studies.task.build_list import listed
 from pliant.studies.task.study import study_of
@@ -36,8 +36,8 @@ def test_a_tilted_plane_is_as_good_as_a_level_one(controller: str, late: bool) -
 def test_who_presses_along_the_worlds_z_axis_does_not_hold_the_force(monkeypatch: pytest.MonkeyPatch) -> None:
     level = run_tilted(0.0, "offset-free-mpc", late=True)
 
-    def as_they_are(stages: Sequence[Stage]) -> tuple[Stage, ...]:
-        return tuple(stages)
+    def as_they_are(all_placed: Sequence[PlacedPhase]) -> tuple[PlacedPhase, ...]:
+        return tuple(all_placed)
 
     def nothing(*_: Any) -> None:
         return None

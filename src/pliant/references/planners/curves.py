@@ -1,4 +1,4 @@
-"""Curves beside what is pressed: in some stages of a list the frame goes round where the planner brings it."""
+"""Curves beside what is pressed: in some phases of a list the frame goes round where the planner brings it."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy as np
 from pliant.errors import ConfigError
 from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
+from pliant.references.placed_phases import PlacedPhases, PlacedPhaseState
 from pliant.references.planners.attractor_planner import AttractorPlanner
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerState
-from pliant.references.stages import Stages, StageState
 from pliant.references.trajectories.trajectory import Hold, Point, Trajectory
 from pliant.signals import Estimate, Reference
 from pliant.spatial import Array
@@ -22,13 +22,13 @@ Planner = HarmonicPlanner | AttractorPlanner
 _NOWHERE = Hold(np.zeros(3)).at(0.0)
 
 
-class StageCurve:
-    """A curve about the target of a stage. After the stage it goes on and shrinks to nothing, twice continuously
+class PhaseCurve:
+    """A curve about the target of a phase. After the phase it goes on and shrinks to nothing, twice continuously
     differentiable.
 
     Args:
-        way: (3,) m from the target, zero and at rest when the stage begins.
-        fade: s in which it is gone after the stage.
+        way: (3,) m from the target, zero and at rest when the phase begins.
+        fade: s in which it is gone after the phase.
 
     Raises:
         ConfigError: it would be gone at once.
@@ -40,7 +40,7 @@ class StageCurve:
         self.way, self.fade = way, fade
 
     def at(self, since: float, after: float) -> Point:
-        """Its place and derivatives `since` s after its stage began and `after` s after it ended (below 0: before)."""
+        """Its place and derivatives `since` s after its phase began and `after` s after it ended (below 0: before)."""
         value, rate, push = self.way.at(since)
         if after <= 0.0:
             return Point(value, rate, push)
@@ -50,10 +50,10 @@ class StageCurve:
         return Point(s * value, s * rate + s_1 * value, s * push + 2.0 * s_1 * rate + s_2 * value)
 
 
-class StageTime(NamedTuple):
-    """When a stage began and ended, s of the loop's clock."""
+class PhaseTime(NamedTuple):
+    """When a phase began and ended, s of the loop's clock."""
 
-    stage: int
+    number: int
     begin: float
     end: float = np.inf
 
@@ -64,22 +64,22 @@ class CurvedState:
 
     inner: Any
     """of the planner"""
-    times: tuple[StageTime, ...] = ()
-    """of the stages whose curves have not faded yet, the present one last"""
+    times: tuple[PhaseTime, ...] = ()
+    """of the phases whose curves have not faded yet, the present one last"""
 
 
 class CurvedTargets(ReferenceSource[CurvedState]):
     """Adds curves to the motion that a planner makes of a list's targets, and to its preview.
 
     Args:
-        planner: of the targets of `Stages`.
-        curves: number of a stage → its curve.
+        planner: of the targets of `PlacedPhases`.
+        curves: number of a phase → its curve.
     """
 
-    def __init__(self, planner: Planner, curves: Mapping[int, StageCurve]) -> None:
-        assert isinstance(planner.inner, Stages)
-        self.planner, self.curves, self._stages = planner, dict(curves), planner.inner
-        self._number = {stage.name: index for index, stage in enumerate(self._stages.stages)}
+    def __init__(self, planner: Planner, curves: Mapping[int, PhaseCurve]) -> None:
+        assert isinstance(planner.inner, PlacedPhases)
+        self.planner, self.curves, self._phases = planner, dict(curves), planner.inner
+        self._number = {phase.name: index for index, phase in enumerate(self._phases.phases)}
 
     def init(self, estimate: Estimate) -> CurvedState:
         return CurvedState(self.planner.init(estimate))
@@ -118,31 +118,32 @@ class CurvedTargets(ReferenceSource[CurvedState]):
             found.append(changed(one, tasks=(changed(task, position=place),)))
         return found
 
-    def _off(self, times: Sequence[StageTime], time: float) -> Point:
+    def _off(self, times: Sequence[PhaseTime], time: float) -> Point:
         """How far the curves are from the targets at a time in s."""
         found = [
-            self.curves[one.stage].at(time - one.begin, time - one.end)
+            self.curves[one.number].at(time - one.begin, time - one.end)
             for one in times
-            if one.stage in self.curves and one.begin <= time
+            if one.number in self.curves and one.begin <= time
         ]
         if not found:
             return _NOWHERE
         return Point(*(np.sum(part, axis=0) for part in zip(*found, strict=True)))
 
-    def _followed(self, times: tuple[StageTime, ...], now: StageState, time: float) -> tuple[StageTime, ...]:
-        """With the stage of now; what has faded is forgotten."""
-        if times and times[-1].stage == now.stage:
+    def _followed(self, times: tuple[PhaseTime, ...], now: PlacedPhaseState, time: float) -> tuple[PhaseTime, ...]:
+        """With the phase of now; what has faded is forgotten."""
+        if times and times[-1].number == now.number:
             return times
-        kept = [one for one in times[:-1] if one.stage in self.curves and time < one.end + self.curves[one.stage].fade]
-        left = [times[-1]._replace(end=now.begin)] if times and times[-1].stage in self.curves else []
-        return (*kept, *left, StageTime(now.stage, now.begin))
+        curved = [one for one in times[:-1] if one.number in self.curves]
+        kept = [one for one in curved if time < one.end + self.curves[one.number].fade]
+        left = [times[-1]._replace(end=now.begin)] if times and times[-1].number in self.curves else []
+        return (*kept, *left, PhaseTime(now.number, now.begin))
 
-    def _expected(self, times: tuple[StageTime, ...], now: StageState, until: float) -> list[StageTime]:
-        """The stages up to a time in s, as far as they are known."""
+    def _expected(self, times: tuple[PhaseTime, ...], now: PlacedPhaseState, until: float) -> list[PhaseTime]:
+        """The phases up to a time in s, as far as they are known."""
         ahead = list(times)
-        for one in self._stages.coming(now, until):
+        for one in self._phases.coming(now, until):
             number = self._number[one.phase]
-            if number != ahead[-1].stage:
+            if number != ahead[-1].number:
                 ahead[-1] = ahead[-1]._replace(end=one.time)
-                ahead.append(StageTime(number, one.time))
+                ahead.append(PhaseTime(number, one.time))
         return ahead

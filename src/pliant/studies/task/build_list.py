@@ -15,7 +15,7 @@ from pliant.experiments.model_error import with_mass_error
 from pliant.experiments.pushes import pushes_of
 from pliant.experiments.sensing import sensing_of
 from pliant.interfaces import Plant
-from pliant.references.stages import Stage
+from pliant.references.placed_phases import PlacedPhase
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import ForceSensor, Imperfections, ImperfectPlant, JointEffects, LinkCapsule, MujocoPlant
 from pliant.simulation.plant import SPEED_STOP
@@ -29,9 +29,9 @@ from pliant.studies.task.listed import (
     frame_of,
     longest_of,
     per_axis,
+    placed_phases_of,
     robot_of_list,
     scene_of,
-    stages_of,
     tracks_of,
 )
 from pliant.studies.task.pressed import asked_of, axes_of, beside_the_axes, pressed_planes, silent_axes, turns_of
@@ -61,20 +61,21 @@ def listed(case: TaskCase) -> Listed:
         parameters = case.controller_parameters(robot, believed)
         return Listed(robot, believed, parameters, source.start, longest_of(case), source)
     start = start_of(robot, frame_of(case), case.start)
-    stages = stages_of(case, robot, robot.placement(start, frame_of(case))[1])
-    _refuse(case, stages)
-    pressing = any(np.any(stage.task.wrench) or "force" in asked_of(stage.task) for stage in stages)
-    oriented = all(stage.task.rotation is not None for stage in stages)
-    surface = pressed_planes(stages, changes_of(case))
+    all_placed = placed_phases_of(case, robot, robot.placement(start, frame_of(case))[1])
+    _refuse(case, all_placed)
+    pressing = any(np.any(placed.task.wrench) or "force" in asked_of(placed.task) for placed in all_placed)
+    oriented = all(placed.task.rotation is not None for placed in all_placed)
+    surface = pressed_planes(all_placed, changes_of(case))
     believed = _believed(case, (frame_of(case),), oriented, frame_of(case) if pressing else None, surface)
     R = robot.placement(start, frame_of(case))[1] if case.timed else None
-    turns = turns_of(stages, case.phase, R)
-    believed = replace(believed, axes=axes_of(stages, turns), turns=turns)
+    turns = turns_of(all_placed, case.phase, R)
+    believed = replace(believed, axes=axes_of(all_placed, turns), turns=turns)
     if case.timed:
-        surface = None if level(stages) and not believed.axes else surface  # nothing is believed of a horizontal one
-        believed = replace(believed, oriented=True, surface=surface, phases=touching(stages, case.phase))
+        if level(all_placed) and not believed.axes:
+            surface = None  # nothing is believed of a horizontal one
+        believed = replace(believed, oriented=True, surface=surface, phases=touching(all_placed, case.phase))
     parameters = case.controller_parameters(robot, believed)
-    gentle = {} if case.timed else landings(case, robot, stages, start)
+    gentle = {} if case.timed else landings(case, robot, all_placed, start)
     return Listed(robot, believed, parameters, start, longest_of(case), None, gentle)
 
 
@@ -85,12 +86,12 @@ def _not_held(case: TaskCase, made: Listed) -> tuple[str, ...]:
     if made.tracked is not None or (yields and not predicts):
         return ()
     R = made.robot.placement(made.start, frame_of(case))[1]
-    stages, feels = stages_of(case, made.robot, R), entry.needs(made.parameters).wrench
+    all_placed, feels = placed_phases_of(case, made.robot, R), entry.needs(made.parameters).wrench
     odd = {
         one.name: beside_the_axes(one, feels=feels, rotation=R if case.timed else None)
         if predicts
         else silent_axes(one)
-        for one in stages
+        for one in all_placed
     }
     told = ", ".join(f"{name!r} ({', '.join(axes)})" for name, axes in odd.items() if axes)
     if not told:
@@ -106,13 +107,13 @@ def _not_held(case: TaskCase, made: Listed) -> tuple[str, ...]:
     )
 
 
-def _refuse(case: TaskCase, stages: Sequence[Stage]) -> None:
+def _refuse(case: TaskCase, all_placed: Sequence[PlacedPhase]) -> None:
     """Raises ConfigError where targets ask for more than the task's limits allow."""
-    forces = [(f"the wrench of phase {one.name!r}", float(np.linalg.norm(one.task.wrench[:3]))) for one in stages]
+    forces = [(f"the wrench of phase {one.name!r}", float(np.linalg.norm(one.task.wrench[:3]))) for one in all_placed]
     changes = [change for change in changes_of(case) if change.wrench is not None]
     forces += [("the wrench of an event", float(np.linalg.norm(one.wrench[:3]))) for one in changes]  # type: ignore[index]
     refuse_beyond(case.limits, forces, [] if case.timed else [("planner.speed", case.planner.speed)])
-    refuse_outside(case.limits, "a target", np.array([one.task.position for one in stages]))
+    refuse_outside(case.limits, "a target", np.array([one.task.position for one in all_placed]))
 
 
 def build_list(case: TaskCase) -> Experiment:

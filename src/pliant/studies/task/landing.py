@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pliant.references.placed_phases import PlacedPhase
 from pliant.references.planners.superposition import MotionLimits
-from pliant.references.stages import Stage
 from pliant.rigid_body import mass_along
 from pliant.robot import Robot
 from pliant.spatial import Array
@@ -75,19 +75,19 @@ def gentle(touch: Touch, mass: float, late: float, force: float) -> tuple[float,
     return max(min(speeds), _SLOWEST), 2.0 * math.pi * math.sqrt(mass / k) + late
 
 
-def landings(case: TaskCase, robot: Robot, stages: Sequence[Stage], start: Array) -> dict[str, GentleLanding]:
+def landings(case: TaskCase, robot: Robot, all_placed: Sequence[PlacedPhase], start: Array) -> dict[str, GentleLanding]:
     """Phase → its gentle landing, for each that goes towards a contact: it asks for a force, and its target lies
     against that from where the phase begins. Args: start: (n,) rad, at the start of the run."""
     if case.landing == "off":
         return {}
-    frame, found = stages[0].task.frame, dict[str, GentleLanding]()
+    frame, found = all_placed[0].task.frame, dict[str, GentleLanding]()
     place = robot.placement(start, frame)[0]
     late = case.simulation.period + case.timing.sensing_delay + case.timing.computation_delay
-    for stage, phase in zip(stages, case.phase, strict=True):
-        way, place = stage.task.position - place, stage.task.position
-        along = pressed_along(stage.task)
+    for placed, phase in zip(all_placed, case.phase, strict=True):
+        way, place = placed.task.position - place, placed.task.position
+        along = pressed_along(placed.task)
         size = float(np.linalg.norm(along))
-        force = float(np.linalg.norm(stage.task.wrench[:3])) or case.limits.force
+        force = float(np.linalg.norm(placed.task.wrench[:3])) or case.limits.force
         met = _met(case, phase)
         if met is None or size == 0.0 or force is None or float(way @ along) > -_LEAST_WAY * size:
             continue
@@ -96,15 +96,16 @@ def landings(case: TaskCase, robot: Robot, stages: Sequence[Stage], start: Array
         fades = thing.transition if case.simulation.contact == "explicit" else 0.0
         speed, press = gentle(Touch(thing.stiffness, thing.damping, fades), mass, late, force)
         limits = MotionLimits(case.planner.speed, case.planner.acceleration)
-        modes = None if stage.task.modes is None else replace(stage.task.modes, speed=_speed(phase) or speed)
+        modes = None if placed.task.modes is None else replace(placed.task.modes, speed=_speed(phase) or speed)
         takes = limits.bounded(modes, way).duration(float(np.linalg.norm(way)))
-        found[stage.name] = GentleLanding(speed, press, name, thing.stiffness, mass, force, takes)
+        found[placed.name] = GentleLanding(speed, press, name, thing.stiffness, mass, force, takes)
     return found
 
 
-def landed(case: TaskCase, stages: Sequence[Stage], known: Mapping[str, GentleLanding]) -> tuple[Stage, ...]:
-    """The stages with what the file says of their landing, or what lands gently."""
-    return tuple(_gentle(stage, phase, known.get(stage.name)) for stage, phase in zip(stages, case.phase, strict=True))
+def landed(case: TaskCase, all_placed: Sequence[PlacedPhase], known: Mapping[str, GentleLanding]) -> list[PlacedPhase]:
+    """The phases with what the file says of their landing, or what lands gently."""
+    both = zip(all_placed, case.phase, strict=True)
+    return [_gentle(placed, phase, known.get(placed.name)) for placed, phase in both]
 
 
 def suggested_landings(case: TaskCase, known: Mapping[str, GentleLanding]) -> dict[str, tuple[float, str]]:
@@ -143,13 +144,13 @@ def _speed(phase: Phase) -> float | None:
     return None if phase.limit is None else phase.limit.speed
 
 
-def _gentle(stage: Stage, phase: Phase, landing: GentleLanding | None) -> Stage:
-    press, task = phase.press, stage.task
+def _gentle(placed: PlacedPhase, phase: Phase, landing: GentleLanding | None) -> PlacedPhase:
+    press, task = phase.press, placed.task
     if landing is not None:
         press = landing.press if press is None else press
         if task.modes is not None and _speed(phase) is None:
             task = replace(task, modes=replace(task.modes, speed=landing.speed))
-    return replace(stage, task=task, press=press or 0.0)
+    return replace(placed, task=task, press=press or 0.0)
 
 
 def _met(case: TaskCase, phase: Phase) -> tuple[str, Thing] | None:

@@ -11,19 +11,19 @@ from pliant.experiments.drawn_events import tunings_drawn
 from pliant.experiments.target_planner import target_planner
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Foreseen
+from pliant.references.placed_phases import Ending, PhaseChange, PlacedPhases
 from pliant.references.planners.curves import CurvedTargets, Planner
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
 from pliant.references.postures.posture_source import PostureSource
 from pliant.references.retuned import Retuned
-from pliant.references.stages import Ending, StageChange, Stages
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
-from pliant.studies.task.curves import stage_curves
+from pliant.studies.task.curves import phase_curves
 from pliant.studies.task.landing import GentleLanding, landed
-from pliant.studies.task.listed import changes_of, frame_of, longest_of, stages_of
+from pliant.studies.task.listed import changes_of, frame_of, longest_of, placed_phases_of
 from pliant.studies.task.timed import timed_source
 
 
@@ -58,9 +58,9 @@ def source_of(case: TaskCase, made: Listed, lookahead: Lookahead | None) -> Refe
 
 
 def with_curves(case: TaskCase, made: Listed, planner: Planner) -> Planner | CurvedTargets:
-    """A planner with the curves that phases ask for beside their targets. Raises ConfigError as `stage_curves`."""
+    """A planner with the curves that phases ask for beside their targets. Raises ConfigError as `phase_curves`."""
     rotation = made.robot.placement(made.start, frame_of(case))[1]
-    curves = stage_curves(case, stages_of(case, made.robot, rotation))
+    curves = phase_curves(case, placed_phases_of(case, made.robot, rotation))
     return CurvedTargets(planner, curves) if curves else planner
 
 
@@ -71,18 +71,18 @@ def planner_in_time(case: TaskCase, made: Listed) -> HarmonicPlanner:
     return HarmonicPlanner(_wanted(case, made, in_time=True), made.robot.placement, limits, {})
 
 
-def _wanted(case: TaskCase, made: Listed, in_time: bool = False) -> Stages:
+def _wanted(case: TaskCase, made: Listed, in_time: bool = False) -> PlacedPhases:
     robot, frame = made.robot, frame_of(case)
-    stages = landed(case, stages_of(case, robot, robot.placement(made.start, frame)[1]), made.landings)
+    all_placed = landed(case, placed_phases_of(case, robot, robot.placement(made.start, frame)[1]), made.landings)
     if in_time:
-        both = zip(stages, case.phase, strict=True)
-        stages = tuple(replace(stage, endings=(Ending(phase.longest),)) for stage, phase in both)
+        both = zip(all_placed, case.phase, strict=True)
+        all_placed = [replace(placed, endings=(Ending(phase.longest),)) for placed, phase in both]
     tuning = made.parameters.impedances().get(frame, made.believed.tunings.get(frame))
     scaled = tunings_drawn(
         case.event, {} if tuning is None else {frame: tuning}, case.seed, min(case.duration, longest_of(case))
     )
-    changes = [StageChange(one.time, tuning=_fields(one.tuning)) for one in scaled]
-    return Stages(robot, stages, tuning, made.parameters.whole_tuning(), (*changes_of(case), *changes))
+    changes = [PhaseChange(one.time, tuning=_fields(one.tuning)) for one in scaled]
+    return PlacedPhases(robot, all_placed, tuning, made.parameters.whole_tuning(), (*changes_of(case), *changes))
 
 
 def _fields(tuning: ImpedanceTuning) -> dict[str, Array]:

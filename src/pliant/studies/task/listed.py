@@ -1,4 +1,4 @@
-"""A task that is a list of phases, as stages, things and changes; tasks that no controller can do are refused here."""
+"""A task that is a list of phases, with its things and changes; tasks that no controller can do are refused here."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from pliant.errors import ConfigError, options
 from pliant.experiments.drawn_events import changes_drawn
-from pliant.references.stages import Ending, Stage, StageChange
+from pliant.references.placed_phases import Ending, PhaseChange, PlacedPhase
 from pliant.robot import Robot
 from pliant.signals import TaskReference
 from pliant.simulation import Ball, Box, Plane, Scene
@@ -62,7 +62,7 @@ def scene_of(case: TaskCase) -> Scene:
     return Scene(tuple(_thing(name, one) for name, one in true_scene(case).items()), contact=case.simulation.contact)
 
 
-def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...]:
+def placed_phases_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[PlacedPhase, ...]:
     """The phases; what one leaves out is as in the one before. Args: rotation: R_world_frame where it is held.
 
     Raises:
@@ -71,7 +71,7 @@ def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...
     frame, target, told, held = frame_of(case), None, np.zeros(6), False
     robot.frame_id(frame)
     axes = np.eye(3)
-    found: list[Stage] = []
+    found: list[PlacedPhase] = []
     for name, phase, about in zip(case.phase_names(), case.phase, axes_of_phases(case), strict=True):
         before, (axes, origin, _) = axes, about
         if phase.target is not None:
@@ -90,7 +90,7 @@ def stages_of(case: TaskCase, robot: Robot, rotation: Array) -> tuple[Stage, ...
         modes = axis_modes(phase, axes, told, held)
         task = TaskReference(frame, target, rotation if held else None, wrench=wrench, modes=modes)
         endings = tuple(_ending(one, phase.otherwise) for one in phase.conditions)
-        found.append(Stage(name, task, endings))
+        found.append(PlacedPhase(name, task, endings))
     return with_axes(found)
 
 
@@ -110,7 +110,7 @@ def longest_of(case: TaskCase) -> float:
     return sum(phase.longest for phase in case.phase) + (case.simulation.period if waits else 0.0)
 
 
-def changes_of(case: TaskCase) -> tuple[StageChange, ...]:
+def changes_of(case: TaskCase) -> tuple[PhaseChange, ...]:
     """The events, as the seed draws them. Raises ConfigError for something that no event can change."""
     until = min(case.duration, longest_of(case))
     return tuple(
@@ -131,7 +131,7 @@ def _ending(condition: Condition, otherwise: str) -> Ending:
     return Ending(condition.duration or 0.0, condition.contact, condition.force, condition.depth, condition.reached)
 
 
-def _change(case: TaskCase, index: int, change: Mapping[str, Any], time: float) -> StageChange:
+def _change(case: TaskCase, index: int, change: Mapping[str, Any], time: float) -> PhaseChange:
     target, wrench = None, None
     tuning: dict[str, Array] = {}
     whole: dict[str, Any] = {}
@@ -157,7 +157,7 @@ def _change(case: TaskCase, index: int, change: Mapping[str, Any], time: float) 
             wrench = np.concatenate([numbers, np.zeros(6 - len(numbers))])
         else:
             tuning[name] = per_axis(numbers if len(numbers) == 3 else float(numbers[0]))  # type: ignore[arg-type]
-    return StageChange(time, target, wrench, tuning, whole)
+    return PhaseChange(time, target, wrench, tuning, whole)
 
 
 def _require_controller(index: int, key: str, name: str) -> None:

@@ -10,7 +10,7 @@ from pliant.signals import TaskReference
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.list_motion import Listed
-from pliant.studies.task.listed import frame_of, stages_of, tracks_of
+from pliant.studies.task.listed import frame_of, placed_phases_of, tracks_of
 from pliant.tasks.phase import Track
 from pliant.telemetry import metrics as of
 from pliant.telemetry.contact_metrics import contact_breaks
@@ -73,21 +73,21 @@ def _pressing(case: TaskCase, made: Listed, log: Log) -> dict[str, tuple[float, 
     force = whole[:, :3]
     wanted, beside = log[f"reference/{frame}/wrench"][:, :3], log[f"truth/{frame}/position"]
     off = np.linalg.norm(beside - log[f"reference/{frame}/position"], axis=1)
-    stages = stages_of(case, made.robot, np.eye(3))
+    all_placed = placed_phases_of(case, made.robot, np.eye(3))
     found: dict[str, tuple[float, str]] = {}
-    for stage, phase in zip(stages, case.phase, strict=True):
-        inside = within(log, time, stage.name, phase.settle)
+    for placed, phase in zip(all_placed, case.phase, strict=True):
+        inside = within(log, time, placed.name, phase.settle)
         if not inside.any():
             continue
-        size = float(np.linalg.norm(stage.task.wrench[:3]))
+        size = float(np.linalg.norm(placed.task.wrench[:3]))
         if size > 0.0:
-            along = stage.task.wrench[:3] / size
+            along = placed.task.wrench[:3] / size
             felt, asked = force[inside] @ along, wanted[inside] @ along
-            found[f"{stage.name}/force_rms"] = (of.rms_error(felt, asked), "N")
-            found[f"{stage.name}/force_max"] = (of.max_error(felt, asked), "N")
-            found[f"{stage.name}/contact_breaks"] = (float(contact_breaks(felt)), "")
-        found |= {f"{stage.name}/{name}": value for name, value in on_silent_axes(stage.task, whole[inside]).items()}
-        found[f"{stage.name}/position_max"] = (1e3 * float(off[inside].max()), "mm")
+            found[f"{placed.name}/force_rms"] = (of.rms_error(felt, asked), "N")
+            found[f"{placed.name}/force_max"] = (of.max_error(felt, asked), "N")
+            found[f"{placed.name}/contact_breaks"] = (float(contact_breaks(felt)), "")
+        found |= {f"{placed.name}/{name}": value for name, value in on_silent_axes(placed.task, whole[inside]).items()}
+        found[f"{placed.name}/position_max"] = (1e3 * float(off[inside].max()), "mm")
     found["force_peak"] = (of.peak(np.linalg.norm(force, axis=1)), "N")
     return found
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from pliant.axis_modes import AXIS_NAMES, Asked, AxisModes, Mode
 from pliant.references.force_axes import task_axes
-from pliant.references.stages import Stage, StageChange
+from pliant.references.placed_phases import PhaseChange, PlacedPhase
 from pliant.signals import TaskReference
 from pliant.spatial import Array
 from pliant.surfaces import FacetSurface, PlaneSurface, SurfaceGeometry
@@ -23,10 +23,10 @@ _PLAIN: tuple[Asked, ...] = ("motion", "motion", "press")
 _MOTION: tuple[Asked, ...] = ("motion", "motion", "motion")
 
 
-def with_axes(stages: Sequence[Stage]) -> tuple[Stage, ...]:
-    """The stages with the axes of their forces; one without a force has those of the next that presses, or of the
+def with_axes(all_placed: Sequence[PlacedPhase]) -> tuple[PlacedPhase, ...]:
+    """The phases with the axes of their forces; one without a force has those of the next that presses, or of the
     last."""
-    own = [task_axes(_frame(stage.task), pressed_along(stage.task)) for stage in stages]
+    own = [task_axes(_frame(placed.task), pressed_along(placed.task)) for placed in all_placed]
     after: Array | None = None
     filled = list[Array | None]()
     for axes in reversed(own):
@@ -34,8 +34,8 @@ def with_axes(stages: Sequence[Stage]) -> tuple[Stage, ...]:
         filled.insert(0, after)
     last = next((axes for axes in reversed(own) if axes is not None), None)
     return tuple(
-        replace(stage, task=replace(stage.task, task_rotation=last if axes is None else axes))
-        for stage, axes in zip(stages, filled, strict=True)
+        replace(placed, task=replace(placed.task, task_rotation=last if axes is None else axes))
+        for placed, axes in zip(all_placed, filled, strict=True)
     )
 
 
@@ -68,27 +68,27 @@ def asked_axes(task: TaskReference) -> tuple[Asked, ...] | None:
     return tuple(force if mode == "force" else mode for mode, force in zip(told, forces, strict=True))
 
 
-def axes_of(stages: Sequence[Stage], turns: Mapping[str, tuple[bool, ...]]) -> dict[str, tuple[Asked, ...]]:
+def axes_of(all_placed: Sequence[PlacedPhase], turns: Mapping[str, tuple[bool, ...]]) -> dict[str, tuple[Asked, ...]]:
     """Phase → what it asks of the three axes of its task; empty where no phase asks for more than one force that
     presses, a motion beside it and an orientation. Args: turns: what single rotations are asked for."""
-    found = {stage.name: asked_axes(stage.task) or _PLAIN for stage in stages}
+    found = {placed.name: asked_axes(placed.task) or _PLAIN for placed in all_placed}
     told = any(one not in (_PLAIN, _MOTION) for one in found.values()) or turns
     return found if told else {}
 
 
 def turns_of(
-    stages: Sequence[Stage], phases: Sequence[Phase], rotation: Array | None = None
+    all_placed: Sequence[PlacedPhase], phases: Sequence[Phase], rotation: Array | None = None
 ) -> dict[str, tuple[bool, ...]]:
     """Phase → which of the moved frame's own three rotations it holds, for each phase whose modes leave some of them
     free.
 
     Args:
-        stages: of a list.
+        phases: of a list.
         phases: the same, as the file says them.
         rotation: R_world_frame that every phase is given; None: each has its own, or none.
     """
-    both = zip(stages, phases, strict=True)
-    found = {stage.name: _held_turns(stage.task, rotation) for stage, phase in both if phase.modes is not None}
+    both = zip(all_placed, phases, strict=True)
+    found = {placed.name: _held_turns(placed.task, rotation) for placed, phase in both if phase.modes is not None}
     return {name: held for name, held in found.items() if held is not None and not all(held)}
 
 
@@ -106,32 +106,32 @@ def _held_turns(task: TaskReference, rotation: Array | None) -> tuple[bool, ...]
     return tuple(held.tolist())
 
 
-def beside_the_axes(stage: Stage, *, feels: bool, rotation: Array | None = None) -> tuple[str, ...]:
+def beside_the_axes(placed: PlacedPhase, *, feels: bool, rotation: Array | None = None) -> tuple[str, ...]:
     """Axes of which a phase asks what weights on the axes of its task cannot say: a moment, a free rotation about what
     is no axis of the moved frame, or 0 N and freedom beside a force that is along none of them. Three free rotations
     are an orientation that is left alone.
 
     Args:
-        stage: of the phase.
+        phase: of the phase.
         feels: whether the measured force is predicted; if not, no axis yields to it.
         rotation: as `turns_of`.
     """
-    told = stage.task.modes
+    told = placed.task.modes
     if told is None:
         return ()
     odd = [place for place in range(3, 6) if told.modes[place] == "force"]
-    if "free" in told.modes[3:] and set(told.modes[3:]) != {"free"} and _held_turns(stage.task, rotation) is None:
+    if "free" in told.modes[3:] and set(told.modes[3:]) != {"free"} and _held_turns(placed.task, rotation) is None:
         odd += [place for place in range(3, 6) if told.modes[place] == "free"]
-    turned = asked_axes(stage.task) is None
-    odd += [place for place in _silent(told, stage.task.wrench) if place < 3 and (turned or not feels)]
+    turned = asked_axes(placed.task) is None
+    odd += [place for place in _silent(told, placed.task.wrench) if place < 3 and (turned or not feels)]
     odd += [place for place in range(3) if turned and told.modes[place] == "free"]
     return tuple(AXIS_NAMES[place] for place in sorted(odd))
 
 
-def silent_axes(stage: Stage) -> tuple[str, ...]:
+def silent_axes(placed: PlacedPhase) -> tuple[str, ...]:
     """Axes on which a phase asks for 0 N or 0 N·m."""
-    told = stage.task.modes
-    return () if told is None else tuple(AXIS_NAMES[place] for place in _silent(told, stage.task.wrench))
+    told = placed.task.modes
+    return () if told is None else tuple(AXIS_NAMES[place] for place in _silent(told, placed.task.wrench))
 
 
 def _silent(modes: AxisModes, wrench: Array) -> list[int]:
@@ -144,12 +144,12 @@ def _frame(task: TaskReference) -> Array:
     return np.eye(3) if task.modes is None else task.modes.rotation
 
 
-def pressed_planes(stages: Sequence[Stage], changes: Sequence[StageChange]) -> SurfaceGeometry | None:
+def pressed_planes(all_placed: Sequence[PlacedPhase], changes: Sequence[PhaseChange]) -> SurfaceGeometry | None:
     """The planes across the forces through the targets, one per direction; None: nothing is pressed."""
     found: list[PlaneSurface] = []
-    for task in (stage.task for stage in stages):
+    for task in (placed.task for placed in all_placed):
         _add(found, pressed_along(task), task.position)
-    place = stages[-1].task.position
+    place = all_placed[-1].task.position
     for change in changes:
         place = place if change.target is None else change.target
         if change.wrench is not None:

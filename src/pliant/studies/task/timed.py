@@ -12,7 +12,7 @@ import numpy as np
 from pliant.errors import ConfigError
 from pliant.interfaces import Lookahead
 from pliant.references.phases import PhasedSource
-from pliant.references.stages import Stage
+from pliant.references.placed_phases import PlacedPhase
 from pliant.references.task_phase import TaskPhase
 from pliant.references.trajectories.excerpt import Excerpt
 from pliant.references.trajectories.rotation import Fixed
@@ -22,7 +22,7 @@ from pliant.robot import Robot
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.curves import curve_of
-from pliant.studies.task.listed import frame_of, stages_of
+from pliant.studies.task.listed import frame_of, placed_phases_of
 from pliant.studies.task.phase_axes import axes_of_phases
 from pliant.studies.task.pressed import axes_of, turns_of
 from pliant.tasks.parts import Pose
@@ -47,57 +47,59 @@ def timed_source(
     place, rotation = robot.placement(start, frame_of(case))
     if isinstance(case.start, Pose):  # as it was asked for, not as the solver met it
         place, rotation = np.array(case.start.xyz), case.start.rotation
-    stages = stages_of(case, robot, rotation)
-    phases = _phases(case, stages, place, rotation, in_time)
+    all_placed = placed_phases_of(case, robot, rotation)
+    phases = _phases(case, all_placed, place, rotation, in_time)
     posture = robot.home if case.start is None or isinstance(case.start, Pose) else start
     return PhasedSource(robot, frame_of(case), phases, rotation, lookahead, posture)
 
 
-def touching(stages: Sequence[Stage], phases: Sequence[Phase]) -> dict[str, bool]:
+def touching(all_placed: Sequence[PlacedPhase], phases: Sequence[Phase]) -> dict[str, bool]:
     """Name of each phase → whether a force is asked for in it."""
     return {
-        stage.name: bool(np.any(stage.task.wrench)) or phase.profile is not None
-        for stage, phase in zip(stages, phases, strict=True)
+        placed.name: bool(np.any(placed.task.wrench)) or phase.profile is not None
+        for placed, phase in zip(all_placed, phases, strict=True)
     }
 
 
-def level(stages: Sequence[Stage]) -> bool:
+def level(all_placed: Sequence[PlacedPhase]) -> bool:
     """Whether everything that is pressed is pressed upwards: then the world's axes are those of the task."""
-    pressed = [stage.task.wrench[:3] for stage in stages if np.any(stage.task.wrench[:3])]
+    pressed = [placed.task.wrench[:3] for placed in all_placed if np.any(placed.task.wrench[:3])]
     return all(wrench[2] > 0.0 and not np.any(wrench[:2]) for wrench in pressed)
 
 
-def _phases(case: TaskCase, stages: Sequence[Stage], place: Array, held: Array, in_time: bool) -> list[TaskPhase]:
+def _phases(
+    case: TaskCase, all_placed: Sequence[PlacedPhase], place: Array, held: Array, in_time: bool
+) -> list[TaskPhase]:
     """Args: place, held: (3,) m and R_world_frame at the start."""
-    axes, touches = axes_of_phases(case), touching(stages, case.phase)
-    flat = level(stages) and not axes_of(stages, turns_of(stages, case.phase, held))
+    axes, touches = axes_of_phases(case), touching(all_placed, case.phase)
+    flat = level(all_placed) and not axes_of(all_placed, turns_of(all_placed, case.phase, held))
     found: list[TaskPhase] = []
     where = place  # as it is believed
-    for index, (stage, phase) in enumerate(zip(stages, case.phase, strict=True)):
+    for index, (placed, phase) in enumerate(zip(all_placed, case.phase, strict=True)):
         R, origin, of_contact = axes[index]
         begin = where if phase.begin is None else origin + R @ np.array(phase.begin)
-        places = [begin, *(origin + R @ np.array(one) for one in phase.via), stage.task.position]
+        places = [begin, *(origin + R @ np.array(one) for one in phase.via), placed.task.position]
         if of_contact:
             places = [one - origin for one in places]
         felt = _waits(phase) and not in_time
         seconds = phase.longest if phase.arrive is None else phase.arrive
         motion = _motion(phase, found, places, R, seconds)
-        rotation = stage.task.task_rotation
+        rotation = placed.task.task_rotation
         found.append(
             TaskPhase(
-                stage.name,
+                placed.name,
                 motion,
                 "touch" if of_contact else "world",
-                _wrench(phase, R, stage.task.wrench),
-                math.inf if index + 1 == len(stages) else phase.longest,
+                _wrench(phase, R, placed.task.wrench),
+                math.inf if index + 1 == len(all_placed) else phase.longest,
                 ends_on_contact=felt,
-                touches=touches[stage.name],
+                touches=touches[placed.name],
                 axes=None if flat or rotation is None else Fixed(rotation),
                 patience=phase.longest if felt else math.inf,
-                modes=None if phase.modes is None else stage.task.modes,
+                modes=None if phase.modes is None else placed.task.modes,
             )
         )
-        where = stage.task.position
+        where = placed.task.position
     return found
 
 

@@ -1,4 +1,4 @@
-"""Stages one after the other: when each ends, what a change does, and until when."""
+"""PlacedPhases one after the other: when each ends, what a change does, and until when."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from pliant.errors import ConfigError, RunFailedError
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.references.stages import Ending, Stage, StageChange, Stages
+from pliant.references.placed_phases import Ending, PhaseChange, PlacedPhase, PlacedPhases
 from pliant.robot import Robot
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 
@@ -25,11 +25,11 @@ def estimate(time: float, contact: bool = False, force: float = 0.0, q: Any = RO
     return Estimate(time, q, zero, zero, zero, wrench, {"foot": contact})
 
 
-def stage(name: str, *endings: Ending, wrench: Any = DOWN, target: Any = HERE) -> Stage:
-    return Stage(name, TaskReference("foot", target, wrench=wrench), endings)
+def placed(name: str, *endings: Ending, wrench: Any = DOWN, target: Any = HERE) -> PlacedPhase:
+    return PlacedPhase(name, TaskReference("foot", target, wrench=wrench), endings)
 
 
-def played(source: Stages, *estimates: Estimate) -> list[Reference]:
+def played(source: PlacedPhases, *estimates: Estimate) -> list[Reference]:
     state = source.init(estimates[0])
     found: list[Reference] = []
     for one in estimates:
@@ -38,11 +38,11 @@ def played(source: Stages, *estimates: Estimate) -> list[Reference]:
     return found
 
 
-def names(source: Stages, *estimates: Estimate) -> list[str]:
+def names(source: PlacedPhases, *estimates: Estimate) -> list[str]:
     return [reference.phase for reference in played(source, *estimates)]
 
 
-LAST = stage("last", Ending(1.0))
+LAST = placed("last", Ending(1.0))
 LOWER = np.array([0.0, 0.05, 0.0]) + ROBOT.home  # the hip turned: the foot is elsewhere
 GONE = float((HERE - ROBOT.placement(LOWER, "foot")[0])[2])
 
@@ -59,42 +59,45 @@ GONE = float((HERE - ROBOT.placement(LOWER, "foot")[0])[2])
         (Ending(reached=1e-3), estimate(3.1, q=LOWER), estimate(3.2)),
     ],
 )
-def test_a_stage_ends_when_all_of_its_condition_holds(ending: Ending, before: Estimate, after: Estimate) -> None:
-    source = Stages(ROBOT, [stage("first", ending), LAST])
+def test_a_phase_ends_when_all_of_its_condition_holds(ending: Ending, before: Estimate, after: Estimate) -> None:
+    source = PlacedPhases(ROBOT, [placed("first", ending), LAST])
     start = estimate(3.0, contact=before.contacts["foot"], q=before.q)  # the loop's clock need not start at zero
     assert names(source, start, before, after) == ["first", "first", "last"]
 
 
-def test_depth_is_along_the_wrench_from_where_the_stage_began() -> None:
+def test_depth_is_along_the_wrench_from_where_the_phase_began() -> None:
     assert abs(GONE) > 1e-3
     wrench = np.copysign(1.0, GONE) * DOWN  # the foot goes against it
     for share, ends in ((1.01, "first"), (0.99, "last")):
-        source = Stages(ROBOT, [stage("first", Ending(depth=share * abs(GONE)), wrench=wrench), LAST])
+        source = PlacedPhases(ROBOT, [placed("first", Ending(depth=share * abs(GONE)), wrench=wrench), LAST])
         assert names(source, estimate(0.0), estimate(0.1, q=LOWER)) == ["first", ends]
-    backwards = Stages(ROBOT, [stage("first", Ending(depth=1e-6), wrench=-wrench), LAST])
+    backwards = PlacedPhases(ROBOT, [placed("first", Ending(depth=1e-6), wrench=-wrench), LAST])
     assert names(backwards, estimate(0.0), estimate(0.1, q=LOWER)) == ["first", "first"]
 
 
 def test_one_of_several_conditions_is_enough_and_a_timeout_fails_or_goes_on() -> None:
     either = (Ending(force=100.0), Ending(0.2))
-    assert names(Stages(ROBOT, [stage("first", *either), LAST]), estimate(0.0), estimate(0.2)) == ["first", "last"]
-    failing = Stages(ROBOT, [stage("search", Ending(force=100.0), Ending(0.2, fails=True)), LAST])
+    assert names(PlacedPhases(ROBOT, [placed("first", *either), LAST]), estimate(0.0), estimate(0.2)) == [
+        "first",
+        "last",
+    ]
+    failing = PlacedPhases(ROBOT, [placed("search", Ending(force=100.0), Ending(0.2, fails=True)), LAST])
     with pytest.raises(RunFailedError, match=r"'search' did not end within 0\.2 s"):
         names(failing, estimate(0.0), estimate(0.2))
 
 
-def test_the_last_stage_lasts() -> None:
-    assert names(Stages(ROBOT, [LAST]), estimate(0.0), estimate(5.0)) == ["last", "last"]
+def test_the_last_phase_lasts() -> None:
+    assert names(PlacedPhases(ROBOT, [LAST]), estimate(0.0), estimate(5.0)) == ["last", "last"]
 
 
-def test_changes_hold_from_their_time_and_a_target_only_until_the_next_stage() -> None:
+def test_changes_hold_from_their_time_and_a_target_only_until_the_next_phase() -> None:
     up, whole = HERE + 0.01, ExplorationConfig()
     assert whole.reset
     changes = [
-        StageChange(0.3, tuning={"force_max": np.full(3, 300.0)}, whole={"reset": False}),
-        StageChange(0.1, target=up, wrench=2.0 * DOWN),
+        PhaseChange(0.3, tuning={"force_max": np.full(3, 300.0)}, whole={"reset": False}),
+        PhaseChange(0.1, target=up, wrench=2.0 * DOWN),
     ]
-    source = Stages(ROBOT, [stage("first", Ending(0.5)), LAST], TUNING, whole, changes)
+    source = PlacedPhases(ROBOT, [placed("first", Ending(0.5)), LAST], TUNING, whole, changes)
     times = (0.0, 0.1, 0.3, 0.5)
     told = played(source, *map(estimate, times))
     assert [reference.tasks[0].wrench[2] for reference in told] == [8.0, 16.0, 16.0, 8.0]
@@ -106,10 +109,10 @@ def test_changes_hold_from_their_time_and_a_target_only_until_the_next_stage() -
 
 def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(ConfigError, match="needs one at least"):
-        Stages(ROBOT, [])
+        PlacedPhases(ROBOT, [])
     with pytest.raises(ConfigError, match=r"'first'.*along its wrench, which is zero"):
-        stage("first", Ending(force=3.0), wrench=np.zeros(6))
+        placed("first", Ending(force=3.0), wrench=np.zeros(6))
     with pytest.raises(ConfigError, match="no impedance at frame 'foot'"):
-        Stages(ROBOT, [LAST], changes=[StageChange(0.1, tuning={"range": np.full(3, 0.01)})])
+        PlacedPhases(ROBOT, [LAST], changes=[PhaseChange(0.1, tuning={"range": np.full(3, 0.01)})])
     with pytest.raises(ConfigError, match="no parameters"):
-        Stages(ROBOT, [LAST], changes=[StageChange(0.1, whole={"reset": False})])
+        PlacedPhases(ROBOT, [LAST], changes=[PhaseChange(0.1, whole={"reset": False})])

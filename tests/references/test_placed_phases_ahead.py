@@ -7,10 +7,10 @@ import pytest
 
 from pliant.errors import ConfigError
 from pliant.interfaces import Lookahead
+from pliant.references.placed_phases import Ending, PhaseChange, PlacedPhase, PlacedPhases
 from pliant.references.planners.harmonic_planner import HarmonicPlanner, PlannerLimits
 from pliant.references.planners.superposition import MotionLimits
 from pliant.references.schedule import LatestReference
-from pliant.references.stages import Ending, Stage, StageChange, Stages
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference, TaskReference
 from pliant.spatial import exp3
@@ -21,15 +21,15 @@ LIMITS = PlannerLimits(MotionLimits(0.4, 4.0), MotionLimits(2.0, 20.0))
 H = 4e-3
 
 
-def stages(rng: np.random.Generator, oriented: bool) -> list[Stage]:
+def all_placed(rng: np.random.Generator, oriented: bool) -> list[PlacedPhase]:
     """Targets that follow one another before the last one is reached, too."""
-    found: list[Stage] = []
+    found: list[PlacedPhase] = []
     for number in range(4):
         rotation = TURNED @ exp3(rng.uniform(-0.4, 0.4, 3)) if oriented else None
         wrench = np.concatenate([rng.uniform(-9.0, 9.0, 3), np.zeros(3)])
         task = TaskReference("flange", HERE + rng.uniform(-0.1, 0.1, 3), rotation, wrench=wrench)
         ending = Ending(H * round(rng.uniform(0.05, 0.5) / H))
-        found.append(Stage(f"stage {number}", task, (ending, Ending(contact=True))))
+        found.append(PlacedPhase(f"placed {number}", task, (ending, Ending(contact=True))))
     return found
 
 
@@ -46,15 +46,15 @@ def played(source: HarmonicPlanner, seconds: float) -> list[Reference]:
 def planner(seed: int, lookahead: Lookahead | None) -> HarmonicPlanner:
     rng = np.random.default_rng(seed)
     changes = [
-        StageChange(H * round(rng.uniform(0.0, 1.0) / H), target=HERE + rng.uniform(-0.1, 0.1, 3)) for _ in range(2)
+        PhaseChange(H * round(rng.uniform(0.0, 1.0) / H), target=HERE + rng.uniform(-0.1, 0.1, 3)) for _ in range(2)
     ]
-    inner = Stages(ROBOT, stages(rng, bool(seed % 2)), changes=changes)
+    inner = PlacedPhases(ROBOT, all_placed(rng, bool(seed % 2)), changes=changes)
     return HarmonicPlanner(inner, ROBOT.placement, LIMITS, lookahead=lookahead)
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_preview_says_what_is_said_later(seed: int) -> None:
-    """To rounding, through ends of stages, changes, and targets that come before the last one is reached."""
+    """To rounding, through ends of phases, changes, and targets that come before the last one is reached."""
     nodes, every = 12, 4
     ahead = Lookahead(nodes, every * H, 3 * H)
     found = played(planner(seed, ahead), 1.6)
@@ -88,11 +88,11 @@ def test_a_preview_changes_nothing_of_what_is_said() -> None:
         np.testing.assert_array_equal(one.tasks[0].velocity, other.tasks[0].velocity)
 
 
-def test_a_stage_that_only_contact_ends_goes_on_and_a_failure_is_not_foreseen() -> None:
+def test_a_phase_that_only_contact_ends_goes_on_and_a_failure_is_not_foreseen() -> None:
     first = TaskReference("flange", HERE)
-    last = Stage("last", TaskReference("flange", HERE + 0.1), (Ending(1.0),))
+    last = PlacedPhase("last", TaskReference("flange", HERE + 0.1), (Ending(1.0),))
     for endings in ((Ending(contact=True),), (Ending(contact=True), Ending(0.1, fails=True))):
-        source = Stages(ROBOT, [Stage("first", first, endings), last])
+        source = PlacedPhases(ROBOT, [PlacedPhase("first", first, endings), last])
         zero = np.zeros(ROBOT.n)
         state = source.init(Estimate(0.0, ROBOT.home, zero, zero, zero))
         assert source.coming(state, 100.0) == []

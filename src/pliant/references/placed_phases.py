@@ -1,4 +1,4 @@
-"""Targets and wrenches one after the other: each stage ends by time, contact, force, depth or place, not by timetable
+"""Targets and wrenches one after the other: each phase ends by time, contact, force, depth or place, not by timetable
 alone; and what a user changes in between."""
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ _ROUNDING = 1e-9  # s; times are sums of periods
 
 @dataclass(frozen=True)
 class Ending:
-    """What must hold together so that a stage ends."""
+    """What must hold together so that a phase ends."""
 
     duration: float = 0.0
     """s, at least, since it began"""
     contact: bool | None = None
     """whether contact is felt; None: either"""
     force: float | None = None
-    """N along the stage's wrench, at least"""
+    """N along the phase's wrench, at least"""
     depth: float | None = None
-    """m gone against the stage's wrench since it began, at least"""
+    """m gone against the phase's wrench since it began, at least"""
     reached: float | None = None
-    """m from the stage's target, at most"""
+    """m from the phase's target, at most"""
     fails: bool = False
-    """whether the run is a failure when this ends the stage"""
+    """whether the run is a failure when this ends the phase"""
 
     @property
     def by_time(self) -> bool:
@@ -44,7 +44,7 @@ class Ending:
 
 
 @dataclass(frozen=True)
-class Stage:
+class PlacedPhase:
     """One target with a wrench. Raises ConfigError on construction where an ending needs a wrench and there is none."""
 
     name: str
@@ -61,8 +61,8 @@ class Stage:
 
 
 @dataclass(frozen=True)
-class StageChange:
-    """From a time on something is different: a target or wrench until the next stage, the rest until the end."""
+class PhaseChange:
+    """From a time on something is different: a target or wrench until the next phase, the rest until the end."""
 
     time: float
     """s since the start of the run"""
@@ -76,14 +76,14 @@ class StageChange:
     """field of the controller's whole tuning → value"""
 
 
-class StageState(NamedTuple):
+class PlacedPhaseState(NamedTuple):
     """Where the list is."""
 
-    stage: int
+    number: int
     begin: float
-    """s of the loop's clock when the stage began"""
+    """s of the loop's clock when the phase began"""
     place: Array
-    """(3,) m, of the frame when the stage began"""
+    """(3,) m, of the frame when the phase began"""
     start: float
     """s when the list began"""
     done: int
@@ -93,46 +93,46 @@ class StageState(NamedTuple):
     built: BuildUp = BuildUp()
 
 
-class Stages(ReferenceSource[StageState]):
-    """The stages in order; the last one lasts.
+class PlacedPhases(ReferenceSource[PlacedPhaseState]):
+    """The phases in order; the last one lasts.
 
     Args:
         robot: whose frame moves.
-        stages: at least one, all for the same frame.
+        phases: at least one, all for the same frame.
         tuning: impedance that every reference carries; None: the controller's own.
         whole: tuning of the whole controller that every reference carries; None: its own.
         changes: in any order.
 
     Raises:
-        ConfigError: no stage, or a change of an impedance or a tuning that there is not.
+        ConfigError: no phase, or a change of an impedance or a tuning that there is not.
     """
 
     def __init__(
         self,
         robot: Robot,
-        stages: Sequence[Stage],
+        phases: Sequence[PlacedPhase],
         tuning: ImpedanceTuning | None = None,
         whole: Any = None,
-        changes: Sequence[StageChange] = (),
+        changes: Sequence[PhaseChange] = (),
     ) -> None:
-        if not stages:
+        if not phases:
             raise ConfigError("a list of phases needs one at least")
-        self.stages, self._robot, self._whole = tuple(stages), robot, whole
+        self.phases, self._robot, self._whole = tuple(phases), robot, whole
         self._tuning = tuning
         self.changes = tuple(sorted(changes, key=lambda change: change.time))
-        self.frame = stages[0].task.frame
+        self.frame = phases[0].task.frame
         if tuning is None and any(change.tuning for change in changes):
             raise ConfigError(f"the controller has no impedance at frame {self.frame!r} that an event could change")
         if whole is None and any(change.whole for change in changes):
             raise ConfigError("the controller has no parameters that references carry and an event could change")
 
-    def init(self, estimate: Estimate) -> StageState:
-        task = replace(self.stages[0].task, tuning=self._tuning)
-        built = BuildUp(self.stages[0].press)
-        return StageState(0, estimate.time, self._place(estimate), estimate.time, 0, task, self._whole, built)
+    def init(self, estimate: Estimate) -> PlacedPhaseState:
+        task = replace(self.phases[0].task, tuning=self._tuning)
+        built = BuildUp(self.phases[0].press)
+        return PlacedPhaseState(0, estimate.time, self._place(estimate), estimate.time, 0, task, self._whole, built)
 
-    def step(self, estimate: Estimate, state: StageState) -> tuple[Reference, StageState]:
-        """Raises RunFailedError where a timeout that is a failure ends a stage, or a bound of its force axes is
+    def step(self, estimate: Estimate, state: PlacedPhaseState) -> tuple[Reference, PlacedPhaseState]:
+        """Raises RunFailedError where a timeout that is a failure ends a phase, or a bound of its force axes is
         passed."""
         state = self._changed(self._advanced(estimate, state), estimate.time)
         if np.isinf(state.built.touched) and estimate.contacts.get(self.frame, False):
@@ -140,57 +140,57 @@ class Stages(ReferenceSource[StageState]):
         self._kept(estimate, state)
         return self._said(estimate.time, state), state
 
-    def coming(self, state: StageState, until: float) -> list[Reference]:
-        """What will be said other than now up to a time in s, as far as it is known: a stage that ends by what is felt
+    def coming(self, state: PlacedPhaseState, until: float) -> list[Reference]:
+        """What will be said other than now up to a time in s, as far as it is known: a phase that ends by what is felt
         goes on. Each reference has the time from which it holds."""
         found: list[Reference] = []
         while True:
-            stage, change = self._ends(state), self._next_change(state)
-            time = min(stage, change)
+            clock, change = self._ends(state), self._next_change(state)
+            time = min(clock, change)
             if time > until:
                 return found
-            # a change at the end of a stage is one of the stage that begins
-            state = self._next(state, time, state.place) if stage <= change + _ROUNDING else self._changed(state, time)
+            # a change at the end of a phase is one of the phase that begins
+            state = self._next(state, time, state.place) if clock <= change + _ROUNDING else self._changed(state, time)
             found.append(self._said(time, state))
 
-    def _said(self, time: float, state: StageState) -> Reference:
+    def _said(self, time: float, state: PlacedPhaseState) -> Reference:
         task, share = state.task, state.built.share(time)
         if share < 1.0:
             task = replace(task, wrench=share * task.wrench)
-        return Reference(time, (task,), phase=self.stages[state.stage].name, tuning=state.whole)
+        return Reference(time, (task,), phase=self.phases[state.number].name, tuning=state.whole)
 
-    def _ends(self, state: StageState) -> float:
-        """s at which the clock alone ends the stage; infinite where it does not."""
-        if state.stage + 1 == len(self.stages):
+    def _ends(self, state: PlacedPhaseState) -> float:
+        """s at which the clock alone ends the phase; infinite where it does not."""
+        if state.number + 1 == len(self.phases):
             return np.inf
-        sure = [one.duration for one in self.stages[state.stage].endings if one.by_time and not one.fails]
+        sure = [one.duration for one in self.phases[state.number].endings if one.by_time and not one.fails]
         return state.begin + min(sure, default=np.inf)
 
-    def _next_change(self, state: StageState) -> float:
+    def _next_change(self, state: PlacedPhaseState) -> float:
         return state.start + self.changes[state.done].time if state.done < len(self.changes) else np.inf
 
-    def _next(self, state: StageState, time: float, place: Array) -> StageState:
-        task = replace(self.stages[state.stage + 1].task, tuning=state.task.tuning)
-        return state._replace(stage=state.stage + 1, begin=time, place=place, task=task)
+    def _next(self, state: PlacedPhaseState, time: float, place: Array) -> PlacedPhaseState:
+        task = replace(self.phases[state.number + 1].task, tuning=state.task.tuning)
+        return state._replace(number=state.number + 1, begin=time, place=place, task=task)
 
-    def _advanced(self, estimate: Estimate, state: StageState) -> StageState:
-        ending = next((one for one in self.stages[state.stage].endings if self._holds(one, estimate, state)), None)
+    def _advanced(self, estimate: Estimate, state: PlacedPhaseState) -> PlacedPhaseState:
+        ending = next((one for one in self.phases[state.number].endings if self._holds(one, estimate, state)), None)
         if ending is None:
             return state
         if ending.fails:
             raise RunFailedError(
-                f"phase {self.stages[state.stage].name!r} did not end within {ending.duration:g} s, and else = 'fail'"
+                f"phase {self.phases[state.number].name!r} did not end within {ending.duration:g} s, and else = 'fail'"
             )
-        if state.stage + 1 == len(self.stages):
+        if state.number + 1 == len(self.phases):
             return state
         after = self._next(state, estimate.time, self._place(estimate))
-        press = self.stages[after.stage].press
+        press = self.phases[after.number].press
         if press == 0.0 or estimate.contacts.get(self.frame, False):
             return after
         return after._replace(built=BuildUp(press))
 
-    def _kept(self, estimate: Estimate, state: StageState) -> None:
-        """Raises RunFailedError where the frame has moved farther along force axes than the stage allows."""
+    def _kept(self, estimate: Estimate, state: PlacedPhaseState) -> None:
+        """Raises RunFailedError where the frame has moved farther along force axes than the phase allows."""
         modes = state.task.modes
         if modes is None or np.isinf(modes.deviation):
             return
@@ -198,11 +198,11 @@ class Stages(ReferenceSource[StageState]):
         gone = float(np.linalg.norm(way[list(modes.having("force")[:3])]))
         if gone > modes.deviation:
             raise RunFailedError(
-                f"phase {self.stages[state.stage].name!r} moved {1e3 * gone:.1f} mm along its force axes, and"
+                f"phase {self.phases[state.number].name!r} moved {1e3 * gone:.1f} mm along its force axes, and"
                 f" limit.deviation allows {1e3 * modes.deviation:g} mm: is what it should touch where it was believed?"
             )
 
-    def _holds(self, ending: Ending, estimate: Estimate, state: StageState) -> bool:
+    def _holds(self, ending: Ending, estimate: Estimate, state: PlacedPhaseState) -> bool:
         if estimate.time - state.begin < ending.duration - _ROUNDING:
             return False
         if ending.contact is not None and estimate.contacts.get(self.frame, False) is not ending.contact:
@@ -221,7 +221,7 @@ class Stages(ReferenceSource[StageState]):
         gone = 0.0 if size == 0.0 else float((state.place - here) @ wrench) / size
         return ending.depth is None or gone >= ending.depth
 
-    def _changed(self, state: StageState, time: float) -> StageState:
+    def _changed(self, state: PlacedPhaseState, time: float) -> PlacedPhaseState:
         while state.done < len(self.changes) and self.changes[state.done].time <= time - state.start + _ROUNDING:
             change, task = self.changes[state.done], state.task
             if change.target is not None:
