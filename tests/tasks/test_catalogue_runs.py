@@ -10,7 +10,7 @@ from pliant.studies.task.study import study_of
 from pliant.tasks.files import catalogue
 from pliant.telemetry import Recorder
 
-TICKS = 200
+TICKS = 60
 
 
 @pytest.mark.study

@@ -45,6 +45,17 @@ class StepLimitState:
     """joint positions of the last tick, rad, its torque and what was held back of it, N·m; J withheld since the start
     (negative: released to the robot)"""
 
+    @property
+    def held_back(self) -> Array:
+        """(n,) N·m, torque of the last tick that was not sent."""
+        n = len(self.memory) // 3
+        return self.memory[2 * n : 3 * n]
+
+    @property
+    def energy(self) -> float:
+        """J withheld from the robot since the start."""
+        return float(self.memory[-1])
+
 
 class StepLimit(Controller[StepLimitState]):
     """Bounds the change of each joint's torque from one period to the next.
