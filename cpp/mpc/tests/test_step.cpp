@@ -63,7 +63,7 @@ struct Told {
     wrench[2] += touches ? 5 : 0;
     if (count % 50 == 33) q[count % dof] = std::nan("");
     if (count % 50 == 35) wrench[2] = inf;
-    estimate = {count * tick, q, v, torque, wrench, disturbance, touches, 2e3};
+    estimate = {count * tick, q, v, torque, wrench, disturbance, touches, 2e3, 20.0, 2.0};
     for (int i = 0; i < 3; ++i) position[i] = (i == 2 ? 1.3 : 0.1) + 1e-3 * noise();
     for (int k = 0; k <= N; ++k) {
       times[k] = estimate.time + lead + 3e-3 * k;
