@@ -12,8 +12,8 @@ import pinocchio as pin
 
 from pliant.errors import ConfigError, RobotError, ShapeError, SignalError, options
 from pliant.robots.assembly import assemble
+from pliant.robots.known_rotors import Rotors
 from pliant.robots.locking import lock
-from pliant.robots.rotors import Rotors
 from pliant.robots.tool import Tool as Tool
 from pliant.robots.tool import ToolBody, with_rod
 from pliant.spatial import Array, is_rotation

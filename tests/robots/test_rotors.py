@@ -13,7 +13,7 @@ from pliant.errors import ConfigError
 from pliant.experiments.registry import get_study
 from pliant.mujoco_model import spec_from_robot
 from pliant.robot import Robot
-from pliant.robots.rotors import IDENTIFIED_FR3, PER_ROOT_TORQUE, RULE
+from pliant.robots.known_rotors import IDENTIFIED_FR3, PER_ROOT_TORQUE, RULE
 from tests.test_robot_files import arm, load, mjcf, urdf
 
 LIGHT = 'ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"'

@@ -1,21 +1,19 @@
-"""`pliant list`: robots, controllers, studies and tasks."""
+"""`pliant list`: robots, controllers, studies and tasks, from rows that were written before."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from importlib.metadata import entry_points
 
 from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
-from pliant.cli.one_controller import print_controller
+from pliant.cli.list_file import written
+from pliant.cli.plain_table import PlainTable
 from pliant.errors import ConfigError, options
-from pliant.experiments.registry import get_study, study_names
 from pliant.robots import CATALOGUE, is_available
-from pliant.tasks import Task
-from pliant.tasks.files import catalogue, load_task, read_task
-from pliant.tasks.phase import Track
-from pliant.wiring.registry import broken_controllers, controllers, find_controller
+
+GROUP = "pliant.controllers"
+"""entry points through which other packages offer controllers"""
 
 
 def list_command(console: Console, what: str | None, name: str | None = None) -> None:
@@ -26,74 +24,61 @@ def list_command(console: Console, what: str | None, name: str | None = None) ->
         if what != "controllers":
             remedy = "; `pliant doctor NAME` looks at a robot" if what == "robots" else ""
             raise ConfigError(f"one name is listed of controllers alone, got {what} {name!r}{remedy}")
+        from pliant.cli.one_controller import print_controller
+        from pliant.wiring.registry import find_controller
+
         print_controller(console, find_controller(name))
         return
     for name, table in _LISTS.items():
         if what in (None, name):
-            console.print(table())
+            table().print(console)
 
 
-def _robots() -> Table:
-    table = Table("robot", "joints from", "what it is", title="robots", title_justify="left")
+def _robots() -> PlainTable:
+    table = PlainTable("robots", ("robot", "joints from", "what it is"), kept=2)
     for entry in CATALOGUE.values():
         remedy = (
             "pip install robot_descriptions"
             if entry.package == "robot_descriptions"
-            else "pip install 'pliant\\[robots]'"
+            else "pip install 'pliant[robots]'"
         )
         missing = "" if is_available(entry) else f" (not installed: {remedy})"
-        table.add_row(entry.name, entry.package, entry.description + missing)
-    table.add_row("FILE", "you", "any fixed-base URDF or MJCF with revolute and prismatic joints")
+        table.rows.append((entry.name, entry.package, entry.description + missing))
+    table.rows.append(("FILE", "you", "any fixed-base URDF or MJCF with revolute and prismatic joints"))
     return table
 
 
-def _controllers() -> Table:
-    table = Table(title="controllers", title_justify="left")
-    table.add_column("controller", no_wrap=True)  # what the user has to type
-    for heading in ("family", "needs", "guarantees", "what it is"):
-        table.add_column(heading)
-    for entry in controllers().values():
-        needs = ", ".join(entry.needs(entry.default).words()) or "–"
-        force = "" if entry.regulates_force else "; regulates no force"
-        table.add_row(entry.name, entry.family, needs, entry.guarantees, entry.summary + force)
-    for name, why in broken_controllers().items():
-        table.add_row(name, "broken", "", "", escape(why))
-    table.add_row("MODULE:CLASS", "own", "", "", "yours, from an importable module or my_file.py:MyController")
+def _controllers() -> PlainTable:
+    table = PlainTable("controllers", ("controller", "family", "needs", "guarantees", "what it is"))
+    rows = written("controllers")
+    if entry_points(group=GROUP):  # what other packages offer is not in the file
+        from pliant.cli.list_rows import controller_rows
+
+        rows = controller_rows()
+    own = ("MODULE:CLASS", "own", "", "", "yours, from an importable module or my_file.py:MyController")
+    table.rows += [*rows, own]
     return table
 
 
-def _studies() -> Table:
-    table = Table("study", "case", "controller", title="studies", title_justify="left")
-    for name in study_names():
-        study = get_study(name)
-        for index, config in enumerate(case.config for case in study.cases.values()):
-            table.add_row(name if index == 0 else "", config.case, config.controller)
-        table.add_section()
+def _studies() -> PlainTable:
+    table = PlainTable("studies", ("study", "case", "controller"), kept=3)
+    last = ""
+    for study, case, controller in written("studies"):
+        if study != last and last:
+            table.breaks.add(len(table.rows))
+        table.rows.append((study if study != last else "", case, controller))
+        last = study
     return table
 
 
-def _tasks() -> Table:
-    table = Table("task", "robot", "surface", "path", "what it is", title="tasks", title_justify="left")
-    for name in catalogue():
-        found = read_task(name)
-        for variant, task in {name: found.task, **{key: load_task(name, key) for key in found.variants}}.items():
-            label = name if variant == name else f"  --case {variant}"
-            table.add_row(label, task.robot, *_where_and_what(task), task.description)
-    table.add_row("FILE.toml", "", "", "", "yours; `pliant new task raster` writes one to begin with")
+def _tasks() -> PlainTable:
+    table = PlainTable("tasks", ("task", "robot", "surface", "path", "what it is"))
+    own = ("FILE.toml", "", "", "", "yours; `pliant new task raster` writes one to begin with")
+    table.rows += [*written("tasks"), own]
     return table
 
 
-def _where_and_what(task: Task) -> tuple[str, str]:
-    """What is touched, and the path on it; of a list of phases the things that stand around, and what moves."""
-    if not task.phase:
-        return task.surface.shape, task.path.pattern
-    things = ", ".join(dict.fromkeys(thing.shape for thing in task.scene.values())) or "nothing"
-    tracks = [track.shape for track in task.phase[0].tracks.values() if isinstance(track, Track)]
-    count = len(task.phase)
-    return things, tracks[0] if tracks else f"{count} phase{'s' if count > 1 else ''}"
-
-
-_LISTS: Mapping[str, Callable[[], Table]] = {
+_LISTS: Mapping[str, Callable[[], PlainTable]] = {
     "robots": _robots,
     "controllers": _controllers,
     "studies": _studies,

@@ -16,9 +16,10 @@ from pliant.robots.chain import arm_of
 from pliant.robots.description import Description
 from pliant.robots.home import bent_home, zero_home
 from pliant.robots.inertia import check_inertia, small_inertia
+from pliant.robots.known_rotors import RULE, Rotors
 from pliant.robots.locking import lock
 from pliant.robots.reading import read_description
-from pliant.robots.rotors import RULE, Rotors, set_rotors
+from pliant.robots.rotors import set_rotors
 from pliant.spatial import Array
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from pliant.robots.rotors import IDENTIFIED_FR3, RULE, Rotors
+from pliant.robots.known_rotors import IDENTIFIED_FR3, RULE, Rotors
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,9 @@ from pydantic import Field
 from pliant.errors import ConfigError, options
 from pliant.quantity import quantity
 from pliant.robots.description import is_revolute
+from pliant.robots.known_rotors import PER_ROOT_TORQUE, Rotors
 from pliant.spatial import Array
 
-Rotors = float | tuple[float, ...] | Literal["assumed"]
-"""kg m² at every joint or at each of all joints of the file; "assumed": from their torque limits"""
 RotorInertia = Annotated[
     Annotated[float, Field(ge=0.0, le=1e3)] | Literal["assumed"] | None,
     quantity(
@@ -30,13 +29,6 @@ RotorInertia = Annotated[
     ),
 ]
 """a key of configurations"""
-
-IDENTIFIED_FR3 = (0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074)
-"""kg m², Franka Research 3, identified in torque control: `franka_fr3/fr3.xml` and its CHANGELOG (2025-04-25) of
-mujoco_menagerie"""
-PER_ROOT_TORQUE = 0.021
-"""kg m² / √(N·m): √τ_max times it is 0.196 and 0.073 kg m² for the drives of 87 and 12 N·m of the FR3"""
-RULE = f"assumed, {PER_ROOT_TORQUE:g} √(torque limit), the rule that fits the identified drives of the FR3"
 
 
 def set_rotors(model: pin.Model, rotors: Rotors) -> None:

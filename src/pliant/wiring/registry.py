@@ -18,7 +18,8 @@ from pliant.wiring.plugins import entry_of, imported
 from pliant.wiring.recipes import RECIPES
 
 GROUP = "pliant.controllers"
-_OWN = merged_entries(CONTROLLERS, PREDICTIVE, RECIPES)
+OWN = merged_entries(CONTROLLERS, PREDICTIVE, RECIPES)
+"""name → entry of what is part of pliant"""
 
 
 def controllers() -> dict[str, ControllerEntry[Any]]:
@@ -36,7 +37,7 @@ def broken_controllers() -> dict[str, str]:
 
 @cache
 def _offered() -> tuple[dict[str, ControllerEntry[Any]], dict[str, str]]:
-    found, broken = dict(_OWN), dict[str, str]()
+    found, broken = dict(OWN), dict[str, str]()
     for point in entry_points(group=GROUP):
         package = "an installed package" if point.dist is None else f"the package {point.dist.name!r}"
         try:
@@ -56,7 +57,7 @@ def find_controller(name: str) -> ControllerEntry[Any]:
     """
     if ":" in name:
         return entry_of(imported(name), name)
-    own = _OWN.get(name)  # searching all installed packages takes time
+    own = OWN.get(name)  # searching all installed packages takes time
     if own is None and name in broken_controllers() and name not in controllers():
         raise ConfigError(broken_controllers()[name])
     return own or find_entry(controllers(), name)
