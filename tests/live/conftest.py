@@ -36,6 +36,15 @@ _FLAGS = [
     "--disable-background-timer-throttling", "--disable-extensions",
 ]  # fmt: skip
 _FEW_PIXELS = 0.35  # a unit of length of the page: the processor draws here
+_CHEAP_PICTURES = """
+const soon = window.requestAnimationFrame.bind(window);
+window.requestAnimationFrame = (draw) => setTimeout(() => soon(draw), 150);
+window.cancelAnimationFrame = (handle) => clearTimeout(handle);
+const open = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, asked) {
+  return open.call(this, kind, kind.startsWith("webgl") ? {...asked, antialias: false} : asked);
+};
+"""  # six pictures a second and no smooth edges, for the same reason: the scene is drawn anew all the time
 PATIENCE = 100.0  # s: other work may share the machine
 
 
@@ -158,6 +167,8 @@ def served(browser: Browser, folder: Path, study: str, case: CaseConfig) -> Iter
         thread = threading.Thread(target=page.serve, daemon=True)
         thread.start()
         tab = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=pixels())
+        if not os.environ.get("PLIANT_SCREENSHOTS"):
+            tab.add_init_script(_CHEAP_PICTURES)
         tab.set_default_timeout(1e3 * PATIENCE)
         made = Live(server, page, tab, folder)
         tab.on("pageerror", lambda error: made.complaints.append(str(error)))
