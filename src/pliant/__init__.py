@@ -12,6 +12,8 @@ first use. Beside them, `pliant.controllers()` and `pliant.robots()` list what c
 import importlib
 from typing import Any
 
+from pliant.lazy import first_use
+
 __version__ = "0.2.0.dev0"
 
 _WHERE = {
@@ -102,11 +104,7 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name in _PACKAGES:
         return importlib.import_module(f"pliant.{name}")
-    if name not in _WHERE:
-        raise AttributeError(f"module 'pliant' has no attribute {name!r}")
-    value = vars(importlib.import_module(_WHERE[name]))[name]
-    globals()[name] = value
-    return value
+    return first_use(__name__, _WHERE, name)
 
 
 def __dir__() -> list[str]:

@@ -22,10 +22,20 @@ def blocks(text: str) -> list[str]:
     return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
 
 
-def test_importing_it_loads_nothing_heavy() -> None:
-    code = "import sys, pliant; print([m for m in sys.modules if m.split('.')[0] in ('numpy', 'pinocchio', 'mujoco')])"
+def heavy_of(statement: str) -> str:
+    code = f"import sys; {statement}; heavy = ('numpy', 'pinocchio', 'mujoco', 'pydantic')"
+    code += "; print([name for name in heavy if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120)
-    assert done.stdout.strip() == "[]"
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize("name", ["pliant", "pliant.mpc"])
+def test_importing_it_loads_nothing_heavy(name: str) -> None:
+    assert heavy_of(f"import {name}") == "[]"
+
+
+def test_the_first_use_of_a_name_loads_what_it_needs() -> None:
+    assert heavy_of("from pliant.mpc import MpcConfig") == "['numpy', 'pinocchio', 'pydantic']"
 
 
 def test_every_name_resolves_and_is_told_to_type_checkers() -> None:
