@@ -79,6 +79,17 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path: Path) -> None:
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
+def test_a_figure_that_is_drawn_once_has_the_bytes_of_one_that_matplotlib_saves(tmp_path: Path) -> None:
+    """`savefig` draws twice: the first time to place everything, which the second one does too."""
+    for name in ("one", "saved"):
+        made = phase_portrait([(LOOP[:, 0], LOOP[:, 2])])
+        if name == "one":
+            save(made, tmp_path / "one.png")
+        else:
+            made.savefig(tmp_path / "saved.png", metadata={"Software": None})
+    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "saved.png").read_bytes()
+
+
 def test_no_global_state_of_matplotlib_is_touched() -> None:
     code = (
         "import sys, numpy as np, matplotlib\nbefore = matplotlib.rcParams.copy()\n"

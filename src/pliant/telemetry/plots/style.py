@@ -98,8 +98,10 @@ def save(made: Figure, path: Path) -> Path:
     Raises:
         OutputError: it cannot be written.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     try:
-        made.savefig(path, dpi=_DPI, metadata={"Software": None})
+        FigureCanvasAgg(made).print_png(path, metadata={"Software": None})  # the bytes of `savefig`, which draws twice
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror or error}") from error
     return path
