@@ -4,28 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 import pinocchio as pin
 
 from pliant.errors import ConfigError, RunFailedError
 from pliant.frozen import changed
-from pliant.interfaces import Lookahead, ReferenceSource
+from pliant.interfaces import CLOCK_ROUNDING, Lookahead, ReferenceSource
 from pliant.references.foreseen import instants
-from pliant.references.landing import Height
-from pliant.references.preview_rows import Moved, packed, preview_of_rows
+from pliant.references.landing import SETTLE, Height
+from pliant.references.preview_rows import (
+    ACCELERATION,
+    AXES,
+    NORMAL,
+    NORMAL_BEND,
+    NORMAL_RATE,
+    POSITION,
+    POSTURE,
+    ROTATION,
+    VELOCITY,
+    WRENCH,
+    Stretch,
+    preview_of_rows,
+    sampled,
+)
+from pliant.references.rows_ahead import RowsAhead
 from pliant.references.task_phase import TaskPhase as TaskPhase
-from pliant.references.trajectories.rotation import Orientation, third_axis
-from pliant.references.trajectories.trajectory import vector
 from pliant.robot import Robot
 from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array
-
-_REMEMBERED = 1024  # instants
-_NO_WRENCH = vector(np.zeros(6), "no wrench")
-_NOWHERE = np.zeros(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,22 +51,6 @@ class PhaseState:
     """of the surface that was touched above the believed one"""
     next_look: float = -np.inf
     """s at which a preview is due"""
-
-
-class PhaseSample(NamedTuple):
-    """Reference of a phase at one instant, before it is anchored. Arrays are shared: do not write into them."""
-
-    position: Array
-    rotation: Array
-    velocity: Array
-    acceleration: Array
-    wrench: Array
-    axes: Array | None
-    normal: tuple[Array, Array, Array] | None
-    """the third of the axes and its first two time derivatives, (6,) each"""
-    posture: Array | None
-    row: Array
-    """the same in a row, for a preview (`preview_rows`)"""
 
 
 class PhasedSource(ReferenceSource[PhaseState]):
@@ -97,8 +89,9 @@ class PhasedSource(ReferenceSource[PhaseState]):
         self._model, self._data = robot.model, robot.model.createData()
         self._frame_id = robot.frame_id(frame)
         self.posture = None if posture is None else robot.vector(posture, "the posture")
-        # a pure function; an instant that is in the preview of many ticks is computed once
-        self._at = lru_cache(_REMEMBERED)(self._work_out)
+        self._samples = [RowsAhead(partial(self._rows, phase)) for phase in self.phases]
+        self._last = self._period = 0.0
+        """s of the clock and between its last two ticks; they decide what is worked out ahead, not what it is"""
 
     def init(self, estimate: Estimate) -> PhaseState:
         here = self._position(estimate.q)
@@ -106,30 +99,21 @@ class PhasedSource(ReferenceSource[PhaseState]):
 
     def step(self, estimate: Estimate, state: PhaseState) -> tuple[Reference, PhaseState]:
         state = self._advanced(estimate, state)
-        now = self._task(state, estimate.time)
-        phase, posture = self.phases[state.index].name, self._said(state, estimate.time).posture
+        time, phase = estimate.time, self.phases[state.index]
+        period, self._last = time - self._last, time
+        regular, self._period = abs(period - self._period) < CLOCK_ROUNDING, period
+        row = self._samples[state.index].row(time - state.start, period if regular else 0.0)
         ahead, preview = self.lookahead, None
-        if ahead is not None and ahead.due(estimate.time, state.next_look):
-            preview = self._preview(state, instants(estimate.time, ahead))
-            state = changed(state, next_look=estimate.time + ahead.every)
-        return Reference(estimate.time, (now,), posture, phase, preview), state
+        if ahead is not None and ahead.due(time, state.next_look):
+            preview = self._preview(state, instants(time, ahead))
+            state = changed(state, next_look=time + ahead.every)
+        posture = row[POSTURE] if len(row) > POSTURE.start else None
+        return Reference(time, (self._placed(state, row, time),), posture, phase.name, preview), state
 
     # ------------------------------------------------------------------ inside
 
-    def _work_out(self, index: int, elapsed: float) -> PhaseSample:
-        phase = self.phases[index]
-        point, posture = phase.motion.at(elapsed), self.posture
-        rotation, velocity, acceleration = self.rotation, np.zeros(6), np.zeros(6)
-        velocity[:3], acceleration[:3] = point.rate, point.acceleration
-        if phase.rotation is not None:
-            rotation, velocity[3:], acceleration[3:] = phase.rotation.at(elapsed)
-        if phase.posture is not None:
-            posture = phase.posture.at(elapsed).value
-        axes = None if phase.axes is None else phase.axes.at(elapsed)
-        wrench = _NO_WRENCH if phase.wrench is None else phase.wrench.at(elapsed).value
-        normal, turned = (None, None) if axes is None else (_normal(axes), axes.rotation)
-        row = packed(point.value, rotation, velocity, wrench, turned, normal, posture)
-        return PhaseSample(point.value, rotation, velocity, acceleration, wrench, turned, normal, posture, row)
+    def _rows(self, phase: TaskPhase, times: Array) -> Array:
+        return sampled(phase, times, self.rotation, self.posture)
 
     def _advanced(self, estimate: Estimate, state: PhaseState) -> PhaseState:
         """The present phase, from time and contact."""
@@ -198,52 +182,63 @@ class PhasedSource(ReferenceSource[PhaseState]):
         return state
 
     def _task(self, state: PhaseState, time: float) -> TaskReference:
-        return self._placed(state, self._said(state, time), time)
+        times = np.array([max(time - state.start, 0.0)])
+        return self._placed(state, self._rows(self.phases[state.index], times)[0], time)
 
-    def _placed(self, state: PhaseState, said: PhaseSample, time: float) -> TaskReference:
+    def _placed(self, state: PhaseState, row: Array, time: float) -> TaskReference:
         """The reference of the phase, moved to its anchor."""
-        phase = self.phases[state.index]
-        offset = {"begin": state.begin, "touch": state.touch}.get(phase.anchor, 0.0)
-        position, velocity, acceleration = said.position + offset, said.velocity, said.acceleration
-        if phase.anchor == "surface" and said.normal is not None:
+        phase, offset = self.phases[state.index], self._offset(state)
+        position, velocity, acceleration = row[POSITION], row[VELOCITY], row[ACCELERATION]
+        if offset is not None:
+            position = position + offset
+        if phase.anchor == "surface":
             h, h_dot, h_ddot = state.height.at(time)
-            n, n_dot, n_ddot = said.normal
+            n, n_dot, n_ddot = row[NORMAL], row[NORMAL_RATE], row[NORMAL_BEND]
             position, velocity, acceleration = position + h * n[:3], velocity + h * n_dot, acceleration + h * n_ddot
             if h_dot or h_ddot:
                 velocity = velocity + h_dot * n
                 acceleration = acceleration + 2.0 * h_dot * n_dot + h_ddot * n
+        axes = None if phase.axes is None else row[AXES].reshape(3, 3)
+        rotation = row[ROTATION].reshape(3, 3)
         return TaskReference(
-            self.frame, position, said.rotation, velocity, acceleration, said.wrench, None, said.axes, phase.modes
+            self.frame, position, rotation, velocity, acceleration, row[WRENCH], None, axes, phase.modes
         )
 
-    def _said(self, state: PhaseState, time: float) -> PhaseSample:
-        """The reference of the phase on its own clock; times are rounded, so that an instant is the same in two
-        ticks."""
-        return self._at(state.index, round(max(time - state.start, 0.0), 9))
+    def _offset(self, state: PhaseState) -> Array | None:
+        anchor = self.phases[state.index].anchor
+        return state.begin if anchor == "begin" else state.touch if anchor == "touch" else None
 
     def _preview(self, state: PhaseState, times: Array) -> Preview:
         """The references at later times (N+1,) s."""
-        rows: list[Array] = []
-        moved: list[Moved] = []
-        names: list[str] = []
-        for instant in times.tolist():
-            state = self._expected(state, instant)
-            said, phase = self._said(state, instant), self.phases[state.index]
-            rows.append(said.row)
-            names.append(phase.name)
-            if phase.anchor == "surface" and said.normal is not None:
-                moved.append((_NOWHERE, *state.height.at(instant)[:2]))
-            else:
-                moved.append(({"begin": state.begin, "touch": state.touch}.get(phase.anchor, _NOWHERE), 0.0, 0.0))
-        return preview_of_rows(times, rows, moved, tuple(names), turning=self._turning)
+        stretches: list[Stretch] = []
+        begin = 0
+        while begin < len(times):
+            state = self._expected(state, float(times[begin]))
+            end = self._until(state, times)
+            stretches.append(self._stretch(state, times[begin:end]))
+            begin = end
+        return preview_of_rows(times, stretches, turning=self._turning)
+
+    def _until(self, state: PhaseState, times: Array) -> int:
+        """Number of the first time (N+1,) s that is expected in a later phase."""
+        phase = self.phases[state.index]
+        if phase.ends_on_contact or state.index + 1 == len(self.phases):
+            return len(times)
+        return int(np.searchsorted(times, state.start + phase.duration - 1e-9))
+
+    def _stretch(self, state: PhaseState, times: Array) -> Stretch:
+        phase, height = self.phases[state.index], state.height
+        rows = self._samples[state.index].rows(times - state.start)
+        heights: list[tuple[float, float, float]] = []
+        if phase.anchor == "surface":
+            settled = times[0] - height.start >= SETTLE
+            heights = (
+                [height.at(time) for time in times[:1].tolist()] * len(times)
+                if settled
+                else [height.at(time) for time in times.tolist()]
+            )
+        return Stretch(phase.name, rows, self._offset(state), heights)
 
     def _position(self, q: Array) -> Array:
         pin.framesForwardKinematics(self._model, self._data, q)
         return np.array(self._data.oMf[self._frame_id].translation)
-
-
-def _normal(axes: Orientation) -> tuple[Array, Array, Array]:
-    """The third of turning axes with its first two time derivatives, (6,) each, the last three entries zero."""
-    rows = np.zeros((3, 6))
-    rows[:, :3] = third_axis(axes)
-    return rows[0], rows[1], rows[2]

@@ -1,84 +1,110 @@
-"""Previews from rows of numbers: an instant is packed once and used in the previews of many ticks."""
+"""References of a phase as rows of numbers, one per instant, and previews made of them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from pliant.references.task_phase import TaskPhase
+from pliant.references.trajectories.rotation import Orientation
 from pliant.signals import Preview
 from pliant.spatial import Array
 
-Moved = tuple[Array, float, float]
-"""displacement of an instant: offset (3,) m; height along the normal, m, and its rate, m/s"""
-
-_POSITION, _VELOCITY, _WRENCH = slice(0, 3), slice(12, 18), slice(18, 24)
-_ROTATION, _AXES = slice(3, 12), slice(24, 33)
-_NORMAL, _NORMAL_RATE = slice(33, 36), slice(36, 42)
-_POSTURE = 42
+POSITION, ROTATION, VELOCITY, ACCELERATION = slice(0, 3), slice(3, 12), slice(12, 18), slice(18, 24)
+WRENCH, AXES = slice(24, 30), slice(30, 39)
+NORMAL, NORMAL_RATE, NORMAL_BEND = slice(39, 45), slice(45, 51), slice(51, 57)
+"""the third of the axes and its first two time derivatives; the last three entries of each are zero"""
+_POSTURE = 57
+POSTURE = slice(_POSTURE, None)
 _WORLD = np.eye(3).ravel()
 
 
-def packed(
-    position: Array,
-    rotation: Array,
-    velocity: Array,
-    wrench: Array,
-    axes: Array | None,
-    normal: tuple[Array, Array, Array] | None,
-    posture: Array | None,
-) -> Array:
-    """One instant as a row.
+class Stretch(NamedTuple):
+    """Consecutive nodes of a preview within one phase."""
+
+    name: str
+    """of the phase"""
+    rows: Array
+    """(m, w), this stretch's own: written into"""
+    offset: Array | None
+    """(3,) m, displacement of all of them; None: none"""
+    heights: Sequence[tuple[float, float, float]]
+    """m, m/s, m/s² along the normal, of each node; empty: none"""
+
+
+def sampled(phase: TaskPhase, times: Array, rotation: Array, posture: Array | None) -> Array:
+    """A phase at many instants of its own clock, before it is anchored.
 
     Args:
-        position: (3,) m.
-        rotation: (3, 3).
-        velocity: (6,) m/s, rad/s.
-        wrench: (6,) N, N·m.
-        axes: (3, 3) R_world_task; None: the world's.
-        normal: the third of the axes and its first two time derivatives, (6,) each; None: it does not turn.
-        posture: (n,) rad; None: none.
+        phase: which one.
+        times: (m,) s, m ≥ 1.
+        rotation: (3, 3) R_world_frame, of a phase that has none of its own.
+        posture: (n,) rad, likewise; None for none.
+
+    Returns:
+        (m, 57 + n), or (m, 57) without a posture.
     """
-    row = np.zeros(_POSTURE + (0 if posture is None else len(posture)))
-    row[_POSITION], row[_ROTATION] = position, rotation.ravel()
-    row[_VELOCITY], row[_WRENCH] = velocity, wrench
-    row[_AXES] = _WORLD if axes is None else axes.ravel()
-    if normal is not None:
-        row[_NORMAL], row[_NORMAL_RATE] = normal[0][:3], normal[1]
+    if phase.posture is not None:
+        posture = phase.posture.rows(times).value
+    table = np.zeros((len(times), _POSTURE + (0 if posture is None else posture.shape[-1])))
+    motion = phase.motion.rows(times)
+    table[:, POSITION], table[:, 12:15], table[:, 18:21] = motion
+    table[:, ROTATION] = rotation.ravel()
+    if phase.rotation is not None:
+        R, spin, change = phase.rotation.rows(times)
+        table[:, ROTATION], table[:, 15:18], table[:, 21:24] = R.reshape(-1, 9), spin, change
+    if phase.wrench is not None:
+        table[:, WRENCH] = phase.wrench.rows(times).value
+    table[:, AXES] = _WORLD
+    if phase.axes is not None:
+        axes = phase.axes.rows(times)
+        table[:, AXES] = axes.rotation.reshape(-1, 9)
+        table[:, 39:42], table[:, 45:48], table[:, 51:54] = _third_axes(axes)
     if posture is not None:
-        row[_POSTURE:] = posture
-    return row
+        table[:, POSTURE] = posture
+    return table
 
 
-def preview_of_rows(
-    times: Array, rows: Sequence[Array], moved: Sequence[Moved], phase: tuple[str, ...], *, turning: bool
-) -> Preview:
+def _third_axes(axes: Orientation) -> tuple[Array, Array, Array]:
+    """`rotation.third_axis` of many instants, (m, 3) each."""
+    R, spin, change = axes
+    n = R[:, :, 2]
+    if not (spin.any() or change.any()):
+        return n, np.zeros_like(n), np.zeros_like(n)
+    n_dot = np.cross(spin, n)
+    return n, n_dot, np.cross(change, n) + np.cross(spin, n_dot)
+
+
+def preview_of_rows(times: Array, stretches: Sequence[Stretch], *, turning: bool) -> Preview:
     """The preview of some instants; a posture is part of it where every instant has one.
 
     Args:
         times: (N+1,) s.
-        rows: N + 1 of `packed`.
-        moved: displacement of each of them.
-        phase: (N+1,) names.
+        stretches: in order, with N + 1 rows in all.
         turning: whether the preview has the task's axes.
     """
+    for _, rows, offset, heights in stretches:
+        if offset is not None:
+            rows[:, POSITION] += offset
+        if heights:
+            lifts = np.array(heights)
+            rows[:, POSITION] += lifts[:, :1] * rows[:, NORMAL][:, :3]
+            rows[:, VELOCITY] += lifts[:, :1] * rows[:, NORMAL_RATE] + lifts[:, 1:2] * rows[:, NORMAL]
+    tables = [stretch.rows for stretch in stretches]
+    table = tables[0]
+    if len(tables) > 1:
+        width = min(rows.shape[1] for rows in tables)
+        table = np.concatenate([rows[:, :width] for rows in tables])
     count = len(times)
-    width = min(map(len, rows))
-    table = np.array(rows if width == max(map(len, rows)) else [row[:_POSTURE] for row in rows])
-    position, velocity = table[:, _POSITION], table[:, _VELOCITY]
-    position += np.array([offset for offset, _, _ in moved])
-    if any(height != 0.0 or rate != 0.0 for _, height, rate in moved):
-        height = np.array([[by, rate] for _, by, rate in moved])
-        position += height[:, :1] * table[:, _NORMAL]
-        velocity += height[:, :1] * table[:, _NORMAL_RATE]
-        velocity[:, :3] += height[:, 1:] * table[:, _NORMAL]
     return Preview(
         time=times,
-        position=position,
-        rotation=table[:, _ROTATION].reshape(count, 3, 3),
-        velocity=velocity,
-        wrench=table[:, _WRENCH],
-        phase=phase,
-        posture=table[:, _POSTURE:] if table.shape[1] > _POSTURE else None,
-        task_rotation=table[:, _AXES].reshape(count, 3, 3) if turning else None,
+        position=table[:, POSITION],
+        rotation=table[:, ROTATION].reshape(count, 3, 3),
+        velocity=table[:, VELOCITY],
+        wrench=table[:, WRENCH],
+        phase=sum(((stretch.name,) * len(stretch.rows) for stretch in stretches), ()),
+        posture=table[:, POSTURE] if table.shape[1] > _POSTURE else None,
+        task_rotation=table[:, AXES].reshape(count, 3, 3) if turning else None,
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from pliant.references.trajectories.rotation import Orientation, Turning
 from pliant.references.trajectories.trajectory import Point, Trajectory
+from pliant.spatial import Array
 
 
 class Excerpt(Trajectory):
@@ -26,6 +27,11 @@ class Excerpt(Trajectory):
         held = self._inner.at(self._start + min(max(time, 0.0), self.duration)).value
         return Point(held, np.zeros(self.size), np.zeros(self.size))
 
+    def rows(self, times: Array) -> Point:
+        value, rate, bend = self._inner.rows(self._start + np.minimum(np.maximum(times, 0.0), self.duration))
+        within = ((times >= 0.0) & (times <= self.duration))[:, None]
+        return Point(value, np.where(within, rate, 0.0), np.where(within, bend, 0.0))
+
 
 class TurningExcerpt(Turning):
     """The same for orientations. Args: as `Excerpt`."""
@@ -38,3 +44,8 @@ class TurningExcerpt(Turning):
             return self._inner.at(self._start + time)
         held = self._inner.at(self._start + min(max(time, 0.0), self._duration)).rotation
         return Orientation(held, np.zeros(3), np.zeros(3))
+
+    def rows(self, times: Array) -> Orientation:
+        R, spin, change = self._inner.rows(self._start + np.minimum(np.maximum(times, 0.0), self._duration))
+        within = ((times >= 0.0) & (times <= self._duration))[:, None]
+        return Orientation(R, np.where(within, spin, 0.0), np.where(within, change, 0.0))

@@ -41,6 +41,13 @@ class Turning(ABC):
     def at(self, time: float) -> Orientation:
         """Rotation, angular velocity and angular acceleration at a time in s."""
 
+    def rows(self, times: Array) -> Orientation:
+        """The same at many times (m,) s: (m, 3, 3), (m, 3) and (m, 3). A row does not depend on the others."""
+        found = [self.at(time) for time in times.tolist()]
+        shapes = ((len(found), 3, 3), (len(found), 3), (len(found), 3))
+        columns = zip(shapes, zip(*found, strict=True), strict=True)
+        return Orientation(*(np.array(column).reshape(shape) for shape, column in columns))
+
 
 class Fixed(Turning):
     """A constant orientation. Args: rotation: R_world_frame (3, 3)."""
@@ -56,6 +63,9 @@ class Fixed(Turning):
     def at(self, time: float) -> Orientation:
         return self._orientation
 
+    def rows(self, times: Array) -> Orientation:
+        return Orientation(*(np.broadcast_to(part, (len(times), *part.shape)) for part in self._orientation))
+
 
 class WarpedTurning(Turning):
     """A rotation over time with another time scaling."""
@@ -66,6 +76,12 @@ class WarpedTurning(Turning):
     def at(self, time: float) -> Orientation:
         phase, rate, acceleration = self.warp.at(time)
         R, w, a = self.inner.at(phase)
+        return Orientation(R, w * rate, a * (rate * rate) + w * acceleration)
+
+    def rows(self, times: Array) -> Orientation:
+        phase, rate, acceleration = self.warp.rows(times)
+        R, w, a = self.inner.rows(phase)
+        rate, acceleration = rate[:, None], acceleration[:, None]
         return Orientation(R, w * rate, a * (rate * rate) + w * acceleration)
 
 

@@ -49,6 +49,16 @@ class Harmonics(Trajectory):
         factors[0] += self._centre
         return Point(factors[0], factors[1], factors[2])
 
+    def rows(self, times: Array) -> Point:
+        value, rate, bend = np.zeros((3, len(times), self.size))
+        for w, phase, amplitude in zip(self._frequencies, self._phases, self._amplitudes, strict=True):
+            angle = w * times + phase
+            sine = np.sin(angle)[:, None]
+            value += sine * amplitude
+            rate += (w * np.cos(angle))[:, None] * amplitude
+            bend -= w * w * sine * amplitude
+        return Point(value + self._centre, rate, bend)
+
 
 def lemniscate(
     period: float = 4.0,

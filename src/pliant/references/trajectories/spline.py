@@ -28,7 +28,9 @@ class Spline(Trajectory):
         chord = np.diff(values, axis=0) / h
         c_2 = (3.0 * chord - 2.0 * slopes[:-1] - slopes[1:]) / h
         c_3 = (slopes[:-1] + slopes[1:] - 2.0 * chord) / h**2
-        self._pieces = list(_with_derivatives(values[:-1], slopes[:-1], c_2, c_3))
+        self._table = _with_derivatives(values[:-1], slopes[:-1], c_2, c_3)
+        self._pieces = list(self._table)
+        self._starts = np.array(times, dtype=np.float64)
         self._last_piece = len(self._pieces) - 1
         self._times: list[float] = times.tolist()
         steps = np.diff(times)
@@ -53,6 +55,19 @@ class Spline(Trajectory):
         t = time - times[index]
         row = np.array((1.0, t, t * t, t * t * t)).dot(self._pieces[index])  # (4,) @ (4, 3k)
         return Point(row[self._value], row[self._rate], row[self._acceleration])
+
+    def rows(self, times: Array) -> Point:
+        starts = self._starts
+        index = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, self._last_piece)
+        if self._step > 0.0:
+            inside = np.minimum(np.maximum(times - starts[0], 0.0) / self._step, self._last_piece)
+            index = inside.astype(np.intp)
+        t, c = (times - starts[index])[:, None], self._table[index]
+        table = c[:, 0] + t * c[:, 1] + (t * t) * c[:, 2] + (t * t * t) * c[:, 3]
+        for outside, held in ((times > starts[-1], self._last), (times < starts[0], self._first)):
+            if outside.any():
+                table[outside] = np.concatenate(held)
+        return Point(table[:, self._value], table[:, self._rate], table[:, self._acceleration])
 
 
 def _with_derivatives(c_0: Array, c_1: Array, c_2: Array, c_3: Array) -> Array:

@@ -6,7 +6,10 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
+import numpy as np
+
 from pliant.errors import ConfigError
+from pliant.spatial import Array
 
 
 class Warp(ABC):
@@ -15,6 +18,11 @@ class Warp(ABC):
     @abstractmethod
     def at(self, time: float) -> tuple[float, float, float]:
         """φ in s, dφ/dt (1) and d²φ/dt² in 1/s."""
+
+    def rows(self, times: Array) -> tuple[Array, Array, Array]:
+        """The same at many times (m,) s: (m,) each."""
+        table = np.array([self.at(time) for time in times.tolist()]).reshape(len(times), 3)
+        return table[:, 0], table[:, 1], table[:, 2]
 
     @abstractmethod
     def time_of(self, phase: float) -> float:
@@ -41,6 +49,11 @@ class EaseIn(Warp):
         phase = self.seconds * u**4 * (2.5 - u * (3.0 - u))
         rate = u**3 * (10.0 - u * (15.0 - 6.0 * u))
         return phase, rate, 30.0 * (u * (1.0 - u)) ** 2 / self.seconds
+
+    def rows(self, times: Array) -> tuple[Array, Array, Array]:
+        if times.size == 0 or times.min() < self.seconds:
+            return super().rows(times)
+        return times - 0.5 * self.seconds, np.ones_like(times), np.zeros_like(times)
 
     def time_of(self, phase: float) -> float:
         if phase >= 0.5 * self.seconds:

@@ -39,6 +39,11 @@ class Trajectory(ABC):
     def at(self, time: float) -> Point:
         """Value, rate and acceleration at a time in s."""
 
+    def rows(self, times: Array) -> Point:
+        """The same at many times (m,) s, as arrays (m, k). A row does not depend on the others."""
+        points = [self.at(time) for time in times.tolist()]
+        return Point(*(np.array(column).reshape(len(points), self.size) for column in zip(*points, strict=True)))
+
     def eased(self, seconds: float) -> Trajectory:
         """The same path, started from rest: its clock speeds up from standstill to full rate within `seconds`."""
         return Warped(self, EaseIn(seconds))
@@ -78,6 +83,10 @@ class Hold(Trajectory):
     def at(self, time: float) -> Point:
         return self._point
 
+    def rows(self, times: Array) -> Point:
+        shape = (len(times), self.size)
+        return Point(*(np.broadcast_to(part, shape) for part in self._point))
+
 
 class Warped(Trajectory):
     """A trajectory with another time scaling: the path is the same, the timing changes."""
@@ -90,6 +99,12 @@ class Warped(Trajectory):
         phase, rate, acceleration = self.warp.at(time)
         value, slope, bend = self.inner.at(phase)
         # chain rule for x(φ(t))
+        return Point(value, slope * rate, bend * (rate * rate) + slope * acceleration)
+
+    def rows(self, times: Array) -> Point:
+        phase, rate, acceleration = self.warp.rows(times)
+        value, slope, bend = self.inner.rows(phase)
+        rate, acceleration = rate[:, None], acceleration[:, None]
         return Point(value, slope * rate, bend * (rate * rate) + slope * acceleration)
 
 
@@ -107,6 +122,10 @@ class Sum(Trajectory):
     def at(self, time: float) -> Point:
         points = [part.at(time) for part in self.parts]
         return Point(*(np.sum(column, axis=0) for column in zip(*points, strict=True)))
+
+    def rows(self, times: Array) -> Point:
+        tables = [part.rows(times) for part in self.parts]
+        return Point(*(np.sum(column, axis=0) for column in zip(*tables, strict=True)))
 
 
 class Blend(Trajectory):

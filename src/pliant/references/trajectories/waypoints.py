@@ -60,6 +60,15 @@ class Waypoints(Trajectory):
         s, s_dot, s_ddot = smooth_step(time - start, seconds)
         return Point(self._values[index] + s * way, s_dot * way, s_ddot * way)
 
+    def rows(self, times: Array) -> Point:
+        first, last = float(times.min(initial=np.inf)), float(times.max(initial=-np.inf))
+        if first < self._times[-1] and last >= self._times[0]:
+            return super().rows(times)
+        shape = (len(times), self.size)
+        held = self._values[-1 if first >= self._times[-1] else 0]
+        still = np.broadcast_to(self._zero, shape)
+        return Point(np.broadcast_to(held, shape), still, still)
+
 
 def wrench_steps(
     times: npt.ArrayLike, forces: npt.ArrayLike, axis: npt.ArrayLike = (0.0, 0.0, 1.0), shape: str = "step"
