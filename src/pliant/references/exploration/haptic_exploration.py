@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pliant.axis_modes import AxisModes
 from pliant.errors import ConfigError, SignalError, options
-from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.frame import ExploredFrame, FrameRules, in_world
@@ -50,11 +49,28 @@ class ExplorationState:
 class _Frame:
     """An explored frame, the names of its channels, when it was last there, and how far it went along its axes."""
 
-    __slots__ = ("explored", "names", "place", "time", "way")
+    __slots__ = ("explored", "names", "place", "said", "task", "time", "way")
 
     def __init__(self, frame: str, time: float, place: Array) -> None:
         self.explored, self.time, self.place, self.way = ExploredFrame(), time, place, np.zeros(3)
         self.names = tuple(f"exploration/{frame}/{name}" for name in CHANNELS)
+        self.task: TaskReference | None = None
+        """the last one"""
+        self.said: _Said | None = None
+        """of that task; a target at rest is the same from tick to tick"""
+
+
+class _Said(NamedTuple):
+    """What a task asks for, as plain numbers."""
+
+    wrench: list[float]
+    """(6,) N and N·m"""
+    place: list[float]
+    """(3,) m"""
+    velocity: list[float]
+    """(6,) m/s and rad/s"""
+    pressed: bool
+    """whether the wrench is not zero"""
 
 
 class HapticExploration(ReferenceSource[ExplorationState]):
@@ -104,7 +120,8 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         diagnostics: dict[str, float | Array] = dict(plain.diagnostics)
         period = min(period, _LONGEST_PERIOD)
         tasks = tuple([self._felt(task, estimate, state, period, diagnostics) for task in plain.tasks])
-        return changed(plain, tasks=tasks, diagnostics=diagnostics), state
+        explored = Reference(plain.time, tasks, plain.posture, plain.phase, plain.preview, plain.tuning, diagnostics)
+        return explored, state
 
     def _felt(
         self,
@@ -117,24 +134,23 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         """The task with its target shifted."""
         tuning = task.tuning or self.tunings.get(task.frame)
         modes = task.modes if state.rules.config.direction == "axes" else None
-        asked = bool(task.wrench.any()) or (modes is not None and "force" in modes.modes)
-        desired: list[float] = task.wrench.tolist()
-        place: list[float] = task.position.tolist()
-        if not math.isfinite(sum(desired) + sum(place)):
-            raise SignalError(f"the reference of frame {task.frame!r} is not finite: {place} m, {desired} N and N·m")
         frame = state.frames.get(task.frame)
+        said = frame.said if frame is not None and frame.task is task else None
+        said = said or _numbers(task)
+        desired, place, velocity, pressed = said
+        asked = pressed or (modes is not None and "force" in modes.modes)
         if frame is None or estimate.time - frame.time > _FORGOTTEN:
             if not asked:
                 return task  # no desired force, and no offset so far
             frame = state.frames[task.frame] = _Frame(task.frame, estimate.time, task.position)
-        frame.time = estimate.time
+        frame.time, frame.task, frame.said = estimate.time, task, said
         if tuning is None:
             raise ConfigError(
                 f"frame {task.frame!r} needs its impedance (stiffness, force_max, range) to be explored: give the task"
                 f" a tuning, or HapticExploration one for the frame; {options(self.tunings, task.frame)}"
             )
         measured = _usable(estimate, task, asked)
-        explored, velocity = frame.explored, task.velocity.tolist()
+        explored = frame.explored
         told, rotation = (desired, measured, place, velocity), None
         if state.rules.config.direction == "axes":
             rotation = task.task_rotation if modes is None else modes.rotation if modes.turned else None
@@ -143,6 +159,14 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         explored.step(state.rules, tuning, *told, estimate.time, period, modes, rotation)
         _report(frame, diagnostics)
         return _shifted(task, explored, tuning, desired, place)
+
+
+def _numbers(task: TaskReference) -> _Said:
+    desired: list[float] = task.wrench.tolist()
+    place: list[float] = task.position.tolist()
+    if not math.isfinite(sum(desired) + sum(place)):
+        raise SignalError(f"the reference of frame {task.frame!r} is not finite: {place} m, {desired} N and N·m")
+    return _Said(desired, place, task.velocity.tolist(), any(desired))
 
 
 def _in_axes(
@@ -181,17 +205,15 @@ def _report(frame: _Frame, diagnostics: dict[str, float | Array]) -> None:
     count = len(explored.limits)
     axes = explored.axes[:count]
     names = frame.names
-    table = np.array(
-        (
-            explored.offsets[:count],
-            [axis.phase for axis in axes],
-            [axis.stiffness for axis in axes],
-            [axis.reachable for axis in axes],
-            [axis.unreachable for axis in axes],
-            [axis.clamped for axis in axes],
-        ),
-        dtype=np.float64,
-    )
+    values = [
+        *explored.offsets[:count],
+        *[axis.phase for axis in axes],
+        *[axis.stiffness for axis in axes],
+        *[axis.reachable for axis in axes],
+        *[axis.unreachable for axis in axes],
+        *[axis.clamped for axis in axes],
+    ]
+    table = np.array(values, dtype=np.float64).reshape(len(names), count)
     for name, row in zip(names, table, strict=True):
         diagnostics[name] = row
 
@@ -208,4 +230,14 @@ def _shifted(
     clamped = in_world(explored.rotation, [axis.clamped for axis in explored.axes])
     if any(clamped):
         wrench = np.array([f - c for f, c in zip(desired, clamped, strict=True)])
-    return changed(task, position=position, rotation=rotation, wrench=wrench, tuning=tuning)
+    return TaskReference(
+        task.frame,
+        position,
+        rotation,
+        task.velocity,
+        task.acceleration,
+        wrench,
+        tuning,
+        task.task_rotation,
+        task.modes,
+    )

@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, SignalError
-from pliant.frozen import changed
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Coming, instants, preview_of
 from pliant.references.planners.superposition import MotionLimits, Superposition
@@ -42,7 +41,7 @@ class PlannerLimits:
 class PlannedFrame:
     """Plans of one frame. Changed in place by the planner that owns it."""
 
-    __slots__ = ("base", "clamped", "linear", "position", "resting", "rotation", "taken", "turn")
+    __slots__ = ("base", "clamped", "linear", "placed", "position", "resting", "rotation", "taken", "turn")
 
     def __init__(self, position: Array, rotation: Array) -> None:
         self.linear = Superposition(_floats(position))
@@ -58,6 +57,8 @@ class PlannedFrame:
         """s at which the last target was taken"""
         self.resting: tuple[Array, Array] | None = None
         """pose while at rest"""
+        self.placed: tuple[TaskReference, TaskReference] | None = None
+        """the last target, and what became of it"""
 
 
 class PlannerState:
@@ -119,7 +120,8 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         preview = goal.preview
         if self.lookahead is not None:
             preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
-        return changed(goal, tasks=tasks, preview=preview, diagnostics=diagnostics), state
+        planned = Reference(goal.time, tasks, goal.posture, goal.phase, preview, goal.tuning, diagnostics)
+        return planned, state
 
     def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
         """The references of the first task at later times, s, increasing, with the targets that are known now.
@@ -153,13 +155,8 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
 
     @staticmethod
     def _is_new(task: TaskReference, frame: PlannedFrame) -> bool:
-        if task.position is not frame.position and not _same(task.position, frame.position):
-            return True
-        return (
-            task.rotation is not None
-            and task.rotation is not frame.rotation
-            and not _same(task.rotation, frame.rotation)
-        )
+        moved = not _same(task.position, frame.position)
+        return moved or not (task.rotation is None or _same(task.rotation, frame.rotation))
 
     def _retarget(self, task: TaskReference, frame: PlannedFrame, time: float) -> None:
         """Takes a new target; position and orientation arrive together where they start together."""
@@ -186,9 +183,15 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
 
 def _placed(task: TaskReference, frame: PlannedFrame, time: float) -> TaskReference:
     """The task of a target, at its planned pose."""
-    pose, velocity, acceleration = _now(frame, time)
-    rotation = None if task.rotation is None else pose[1]
-    return changed(task, position=pose[0], rotation=rotation, velocity=velocity, acceleration=acceleration)
+    if frame.resting is not None and frame.placed is not None and frame.placed[0] is task:
+        return frame.placed[1]
+    (position, turned), velocity, acceleration = _now(frame, time)
+    rotation = None if task.rotation is None else turned
+    placed = TaskReference(
+        task.frame, position, rotation, velocity, acceleration, task.wrench, task.tuning, task.task_rotation, task.modes
+    )
+    frame.placed = task, placed
+    return placed
 
 
 def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, Array]:
@@ -239,7 +242,7 @@ def _nearest(turn: Array, last: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _same(a: Array, b: Array | None) -> bool:
-    return b is not None and bool((a == b).all())
+    return a is b or (b is not None and bool((a == b).all()))
 
 
 def _floats(values: Array) -> tuple[float, ...]:
