@@ -9,12 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "../shared/numpy_arrays.hpp"
+
 namespace pliant::contact {
 
 namespace nb = nanobind;
 
-using Doubles = nb::ndarray<double, nb::c_contig, nb::device::cpu>;
-using Constants = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Doubles = Packed<double>;
+using Constants = Packed<const double>;
 using Integers = nb::ndarray<const int32_t, nb::c_contig, nb::device::cpu>;
 
 inline void require_size(size_t got, size_t wanted, const char* name) {

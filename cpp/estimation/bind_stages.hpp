@@ -122,7 +122,7 @@ inline FitSettings fit_of(const FilterRow& filter, double touch, double least_fo
           correlated,        samples, least_samples, accuracy,     drift};
 }
 
-using Row = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Row = Packed<double, 1>;
 
 inline void fit_step(const EnvironmentFit& fit, double force, double depth, double rate, const Row& memory) {
   if (memory.size() != size_t(fit_size)) throw std::invalid_argument("memory must have FIT_SIZE entries");

@@ -12,7 +12,7 @@
 
 namespace pliant::guard {
 
-using Row = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Row = Packed<double, 1>;
 
 // What a controller says may be spent in the next period [J]; without such a channel there is no end of it.
 inline double spendable_of(nb::handle diagnostics, const nb::str& channel) {

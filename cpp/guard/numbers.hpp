@@ -21,18 +21,12 @@ class Look {
     if (good_) squares_ += std::abs(PyFloat_AS_DOUBLE(value.ptr()));
   }
   void array(nb::handle value, std::initializer_list<long> shape) {
-    if (!good_ || !(good_ = Py_TYPE(value.ptr()) == ndarray_type())) return;
-    Py_buffer buffer;
-    if (PyObject_GetBuffer(value.ptr(), &buffer, PyBUF_STRIDED_RO | PyBUF_FORMAT)) {
-      PyErr_Clear();
-      good_ = false;
-      return;
-    }
-    good_ = buffer.format && std::strcmp(buffer.format, "d") == 0 && buffer.ndim == int(shape.size());
+    if (!good_) return;
+    const PyArrayObject* array = doubles_of(value);
+    if (!(good_ = array && PyArray_NDIM(array) == int(shape.size()))) return;
     int axis = 0;
-    for (const long size : shape) good_ = good_ && buffer.shape[axis++] == size;
-    if (good_) add(buffer, 0, static_cast<const char*>(buffer.buf));
-    PyBuffer_Release(&buffer);
+    for (const long size : shape) good_ = good_ && PyArray_DIMS(array)[axis++] == size;
+    if (good_) add(array, 0, PyArray_BYTES(const_cast<PyArrayObject*>(array)));
   }
   // None is good, too.
   void optional(nb::handle value, std::initializer_list<long> shape) {
@@ -43,17 +37,14 @@ class Look {
   bool good_ = true;
   double squares_ = 0;
 
-  static PyTypeObject* ndarray_type() {
-    static const nb::object found = nb::module_::import_("numpy").attr("ndarray");
-    return reinterpret_cast<PyTypeObject*>(found.ptr());
-  }
-  void add(const Py_buffer& buffer, int axis, const char* at) {
-    if (axis == buffer.ndim) {
+  void add(const PyArrayObject* array, int axis, const char* at) {
+    if (axis == PyArray_NDIM(array)) {
       const double x = *reinterpret_cast<const double*>(at);
       squares_ += x * x;
       return;
     }
-    for (Py_ssize_t i = 0; i < buffer.shape[axis]; ++i) add(buffer, axis + 1, at + i * buffer.strides[axis]);
+    const npy_intp step = PyArray_STRIDES(array)[axis];
+    for (npy_intp i = 0; i < PyArray_DIMS(array)[axis]; ++i) add(array, axis + 1, at + i * step);
   }
 };
 

@@ -7,16 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "../shared/numpy_arrays.hpp"
 #include "stack.hpp"
 
 namespace pliant::impedance {
 
 namespace nb = nanobind;
 
-using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using ConstVector = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Table = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using ConstTable = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Vector = Packed<double, 1>;
+using ConstVector = Packed<const double, 1>;
+using Table = Packed<double, 2>;
+using ConstTable = Packed<const double, 2>;
 using ConstMatrix = nb::ndarray<const double, nb::ndim<2>, nb::device::cpu>;
 
 [[noreturn]] inline void reject(const std::string& message) { throw nb::value_error(message.c_str()); }

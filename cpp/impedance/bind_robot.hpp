@@ -69,20 +69,20 @@ class Arm {
 
 // Copies an array of this shape, row by row, whatever the steps between its numbers.
 inline void copy_array(nb::handle value, const char* name, std::initializer_list<long> shape, double* to) {
-  Py_buffer buffer;
-  if (PyObject_GetBuffer(value.ptr(), &buffer, PyBUF_STRIDED_RO | PyBUF_FORMAT)) throw nb::python_error();
-  bool plain = buffer.format && std::strcmp(buffer.format, "d") == 0 && buffer.ndim == int(shape.size());
+  PyArrayObject* array = doubles_of(value);
+  const int ndim = int(shape.size());
+  bool plain = array && PyArray_NDIM(array) == ndim;
   int axis = 0;
-  for (const long size : shape) plain = plain && buffer.shape[axis++] == size;
+  for (const long size : shape) plain = plain && PyArray_DIMS(array)[axis++] == size;
   if (plain) {
-    const long rows = buffer.ndim > 1 ? long(buffer.shape[0]) : 1, columns = long(buffer.shape[buffer.ndim - 1]);
-    const auto* from = static_cast<const char*>(buffer.buf);
-    const Py_ssize_t row = buffer.ndim > 1 ? buffer.strides[0] : 0, step = buffer.strides[buffer.ndim - 1];
+    const npy_intp *sizes = PyArray_DIMS(array), *steps = PyArray_STRIDES(array);
+    const long rows = ndim > 1 ? long(sizes[0]) : 1, columns = long(sizes[ndim - 1]);
+    const npy_intp row = ndim > 1 ? steps[0] : 0, step = steps[ndim - 1];
     for (long i = 0; i < rows; ++i)
-      for (long j = 0; j < columns; ++j) *to++ = *reinterpret_cast<const double*>(from + i * row + j * step);
+      for (long j = 0; j < columns; ++j)
+        *to++ = *reinterpret_cast<const double*>(PyArray_BYTES(array) + i * row + j * step);
+    return;
   }
-  PyBuffer_Release(&buffer);
-  if (plain) return;
   Numbers numbers;  // of another type, or a shape that it refuses
   const Rows rows = numbers.read(value, name, shape);
   const long columns = *(shape.end() - 1), count = shape.size() > 1 ? *shape.begin() : 1;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "../shared/numpy_arrays.hpp"
 #include "physics.hpp"
 
 namespace nb = nanobind;
@@ -18,8 +19,8 @@ using namespace nb::literals;
 
 namespace pliant::plant {
 
-using Vector = nb::ndarray<double, nb::c_contig, nb::device::cpu>;
-using ConstVector = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Vector = Packed<double>;
+using ConstVector = Packed<const double>;
 using Doubles = std::vector<double>;
 using PushRow = std::tuple<int, Doubles, double, double>;                       // site, N, s, s
 using SensorRow = std::tuple<int, double, Doubles, Doubles, std::vector<int>>;  // see Sensor

@@ -130,16 +130,13 @@ class PyStep {
   // Rows of `out` (3, n): torque, what the limits took away, disturbance.
   void write(const step::Answer& answer, const PyState& s, nb::handle out) const {
     const size_t n = size_t(core_.settings().n());
-    Py_buffer buffer;
-    if (PyObject_GetBuffer(out.ptr(), &buffer, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)) throw nb::python_error();
-    const bool fits = buffer.len == Py_ssize_t(3 * n * sizeof(double));
-    double* row = static_cast<double*>(buffer.buf);
+    const auto rows = nb::cast<Packed<double>>(out, false);
+    if (rows.size() != 3 * n) throw std::invalid_argument("out must have 3 rows of a number per joint");
+    double* row = rows.data();
     for (const double* values : {answer.torque, answer.clamped, s.state.memory.disturbance}) {
-      if (fits) std::memcpy(row, values, n * sizeof(double));
+      std::memcpy(row, values, n * sizeof(double));
       row += n;
     }
-    PyBuffer_Release(&buffer);
-    if (!fits) throw std::invalid_argument("out must have 3 rows of a number per joint");
   }
 };
 

@@ -1,13 +1,10 @@
-"""Channels and groups: names, units, shapes and labels of the numbers in a log."""
+"""Channels: names, units, shapes and labels of the numbers in a log, and where each one stands in a tick."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
-
-from pliant.signals import Tick
+from typing import NamedTuple
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,20 +26,19 @@ class Channel:
         return math.prod(self.shape)
 
 
+class Key(NamedTuple):
+    """A step to the value of a mapping."""
+
+    name: str
+
+
+Path = tuple[str | int | Key, ...]
+"""steps from a tick to a value: the name of an attribute, the number of an item, the key of a mapping"""
+
+
 @dataclass(frozen=True, slots=True)
-class ChannelGroup:
-    """Channels that are extracted from a tick in one call."""
+class PlacedChannel:
+    """A channel and where it stands in a tick."""
 
-    pick: Callable[[Tick], Sequence[Any]]
-    channels: tuple[Channel, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Groups:
-    """All channels of ticks of one structure."""
-
-    signals: tuple[ChannelGroup, ...]
-    """arrays of the signals: float64 by their types"""
-    arrays: tuple[ChannelGroup, ...]
-    """array diagnostics: of any numeric type"""
-    scalars: tuple[ChannelGroup, ...]
+    path: Path
+    channel: Channel

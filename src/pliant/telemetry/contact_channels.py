@@ -2,47 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from pliant.signals import Estimate, Tick
-from pliant.spatial import Array
-from pliant.telemetry.channels import Channel, ChannelGroup
+from pliant.signals import Estimate
+from pliant.telemetry.channels import Channel, Key, Path, PlacedChannel
 
 _UNITS = {"stiffness": "N/m", "damping": "N·s/m", "stiffness_std": "N/m", "damping_std": "N·s/m"}
 _SURFACE = {"pivot": "m", "turn": "rad", "normal": "1"}
 _AXES = ("x", "y", "z")
 
 
-def contact_groups(estimate: Estimate) -> tuple[list[ChannelGroup], list[ChannelGroup]]:
-    """The groups of arrays and the groups of scalars of an estimate like this one."""
-    surfaces = [_surface_channels(frame) for frame in estimate.surfaces]
-    scalars = [_environment_channels(frame) for frame in estimate.environments]
-    return [arrays for arrays, _ in surfaces], scalars + [std for _, std in surfaces]
+def contact_channels(estimate: Estimate) -> tuple[list[PlacedChannel], list[PlacedChannel]]:
+    """The arrays and the scalars of an estimate like this one.
 
-
-def _environment_channels(frame: str) -> ChannelGroup:
-    """`estimate/FRAME/stiffness`, `…/damping` and their standard uncertainties, from `Estimate.environments`."""
-
-    def values(tick: Tick) -> Sequence[float]:
-        found = tick.estimate.environments[frame]
-        return found.stiffness, found.damping, found.stiffness_std, found.damping_std
-
-    return ChannelGroup(values, tuple(Channel(f"estimate/{frame}/{name}", unit) for name, unit in _UNITS.items()))
-
-
-def _surface_channels(frame: str) -> tuple[ChannelGroup, ChannelGroup]:
-    """`estimate/FRAME/surface/pivot`, `…/turn` and `…/normal`, each (3,), and `…/normal_std`, from `Estimate.surfaces`.
-
-    Returns:
-        The group of arrays and the group of scalars.
+    `estimate/FRAME/surface/pivot`, `…/turn` and `…/normal`, each (3,), and `…/normal_std`, from `Estimate.surfaces`;
+    `estimate/FRAME/stiffness`, `…/damping` and their standard uncertainties, from `Estimate.environments`.
     """
-
-    def arrays(tick: Tick) -> Sequence[Array]:
-        found = tick.estimate.surfaces[frame]
-        return found.pivot, found.turn, found.normal
-
-    def scalars(tick: Tick) -> Sequence[float]:
-        return (tick.estimate.surfaces[frame].normal_std,)
-
-    named = tuple(Channel(f"estimate/{frame}/surface/{name}", unit, (3,), _AXES) for name, unit in _SURFACE.items())
-    return ChannelGroup(arrays, named), ChannelGroup(scalars, (Channel(f"estimate/{frame}/surface/normal_std", "rad"),))
+    arrays: list[PlacedChannel] = []
+    scalars: list[PlacedChannel] = []
+    for frame in estimate.environments:
+        path: Path = ("estimate", "environments", Key(frame))
+        scalars += [
+            PlacedChannel((*path, name), Channel(f"estimate/{frame}/{name}", unit)) for name, unit in _UNITS.items()
+        ]
+    for frame in estimate.surfaces:
+        path = ("estimate", "surfaces", Key(frame))
+        named = f"estimate/{frame}/surface"
+        arrays += [
+            PlacedChannel((*path, name), Channel(f"{named}/{name}", unit, (3,), _AXES))
+            for name, unit in _SURFACE.items()
+        ]
+        scalars.append(PlacedChannel((*path, "normal_std"), Channel(f"{named}/normal_std", "rad")))
+    return arrays, scalars

@@ -7,10 +7,11 @@ import contextlib
 import io
 import queue
 import threading
+from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, Self
+from typing import BinaryIO, Self
 
 import numpy as np
 
@@ -23,11 +24,11 @@ from pliant.telemetry.mcap.topics import PREFIX, units_of
 from pliant.telemetry.mcap.writer import McapFile
 from pliant.telemetry.row_layout import Block, RowLayout
 from pliant.telemetry.scene_topics import DrawnScene, SceneTopics
-from pliant.telemetry.schema import signature
 from pliant.telemetry.target import open_target, whole_seconds_below
 from pliant.telemetry.timing import Timing
 
 _BLOCK = 512  # ticks per block: what a killed process loses at most, and one chunk of the file
+_KNOWN = 16  # latest layouts that are kept
 _WAITING = 4  # full blocks in memory before the loop waits for the file
 
 
@@ -68,8 +69,7 @@ class Recorder:
         self.path = Path(target) if isinstance(target, (str, Path)) else None
         self._stream, self._owned = open_target(target)
         self._channels, self._decimation = tuple(channels), decimation
-        self._layouts: dict[tuple[Any, ...], RowLayout] = {}
-        self._signature: tuple[Any, ...] | None = None
+        self._layouts: deque[RowLayout] = deque(maxlen=_KNOWN)
         self._block: Block | None = None
         self._seen = 0
         self.timing = Timing()
@@ -93,7 +93,7 @@ class Recorder:
         Raises:
             OutputError: the file could not be written (the disk is full, say).
             ConfigError: two channels have the same name.
-            ShapeError: a diagnostic is neither a number nor an array.
+            ShapeError: a diagnostic is neither a number nor an array, or a signal has an array of a wrong size.
         """
         seen = self._seen
         self._seen = seen + 1
@@ -103,13 +103,8 @@ class Recorder:
             return
         if self._error is not None:
             raise self._failure(self._error)
-        block = self._room(tick)
-        try:
-            block.layout.fill(tick, block)
-        except (ValueError, TypeError):
-            block = self._replanned(tick)
-        block.times[block.count] = tick.measurement.time
-        block.count += 1
+        if self._block is None or not self._block.add(tick):
+            self._begin_block(tick)
 
     def log(self) -> Log:
         """Closes the recorder and reads what it wrote.
@@ -171,32 +166,22 @@ class Recorder:
 
     # ------------------------------------------------------------------ in the loop
 
-    def _room(self, tick: Tick) -> Block:
-        """A block with a free row that fits the tick."""
-        found, phase, block = signature(tick), tick.reference.phase, self._block
-        if block is not None and found == self._signature and phase == block.phase and block.count < len(block.times):
-            return block
-        layout = self._layouts.get(found)
-        if layout is None:
-            layout = self._layouts[found] = self._layout(tick)
-        self._signature = found
-        return self._new_block(layout, phase)
-
-    def _replanned(self, tick: Tick) -> Block:
-        """A block for a tick in which a diagnostic has another shape than before, with its row filled."""
-        assert self._signature is not None
-        layout = self._layouts[self._signature] = self._layout(tick)
-        block = self._new_block(layout, tick.reference.phase)
-        try:
-            layout.fill(tick, block)
-        except (ValueError, TypeError) as error:
-            raise ShapeError(f"a tick cannot be recorded: {error}") from error
-        return block
-
-    def _new_block(self, layout: RowLayout, phase: str) -> Block:
+    def _begin_block(self, tick: Tick) -> None:
+        """A block whose first row is this tick."""
         self._send()
-        self._block = Block(layout, phase, _BLOCK)
-        return self._block
+        phase = tick.reference.phase
+        for layout in self._layouts:
+            block = Block(layout, phase, _BLOCK)
+            if block.add(tick):
+                self._block = block
+                return
+        layout = self._layout(tick)
+        block = Block(layout, phase, _BLOCK)
+        if not block.add(tick):
+            misfit = layout.misfit(layout.row.fill(tick, block.rows, 0))
+            raise ShapeError(f"a tick cannot be recorded: {misfit} has another size than such a signal must have")
+        self._layouts.appendleft(layout)
+        self._block = block
 
     def _send(self) -> None:
         if self._block is not None and self._block.count and self._error is None:

@@ -1,80 +1,96 @@
-"""Copies ticks of one structure into rows of numbers, fast enough for the control loop."""
+"""The numbers of a tick as a row: which ticks have the same row, and where each channel stands in it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any, Self
 
 import numpy as np
 
+from pliant._telemetry import Row
 from pliant.signals import Tick
 from pliant.spatial import Array
-from pliant.telemetry.channels import Channel, ChannelGroup
+from pliant.telemetry.channels import Channel, Path, PlacedChannel
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.mcap.topics import Topic, is_rotation, logged, quaternions, topics
-from pliant.telemetry.schema import groups
+from pliant.telemetry.schema import channels_of
+
+_MAPPINGS = {
+    "measurement": ("wrenches",),
+    "estimate": ("wrenches", "contacts", "environments", "surfaces"),
+    "reference": ("diagnostics",),
+    "command": ("diagnostics",),
+    "truth": ("positions", "rotations", "wrenches", "objects"),
+}
+"""signal → its mappings; their keys determine the channels"""
+_OPTIONAL = (("estimate", "disturbance"), ("reference", "posture"), ("truth", "limit_excess"))
 
 
 @dataclass(frozen=True)
 class RowLayout:
-    """How a tick lies in a row: plain arrays, then the other arrays, then scalars.
+    """How a tick lies in a row: one channel after the other."""
 
-    Plain are the signals' arrays that are float64 in C order: their bytes can be taken as they are, in a sixth of the
-    time of `np.concatenate`. Diagnostics are copied with conversion, because their type may change.
-    """
-
-    plain: tuple[ChannelGroup, ...]
-    arrays: tuple[ChannelGroup, ...]
-    scalars: tuple[ChannelGroup, ...]
+    row: Row
     channels: tuple[Channel, ...]
     """in the order of a row"""
-    ends: tuple[int, int, int]
-    """entry of a row at which each of the three parts ends"""
     topics: list[Topic]
 
     @classmethod
     def of(cls, tick: Tick, info: RunInfo, units: Sequence[Channel]) -> Self:
-        """The layout of ticks like this one. Arguments and errors as of `groups`."""
-        found = groups(tick, info, units)
-        plain = tuple(group for group in found.signals if _is_plain(group, tick))
-        arrays = (*(group for group in found.signals if group not in plain), *found.arrays)
-        parts = [[c for group in part for c in group.channels] for part in (plain, arrays, found.scalars)]
-        ends = np.cumsum([sum(channel.size for channel in part) for part in parts]).tolist()
-        channels = tuple(channel for part in parts for channel in part)
-        return cls(plain, arrays, found.scalars, channels, (ends[0], ends[1], ends[2]), topics(logged(channels)))
+        """The layout of ticks like this one. Arguments and errors as of `channels_of`."""
+        found = channels_of(tick, info, units)
+        channels = tuple(placed.channel for placed in found)
+        return cls(_row(tick, found), channels, topics(logged(channels)))
 
-    def fill(self, tick: Tick, block: Block) -> None:
-        """Copies a tick into a block's next row.
-
-        Raises:
-            ValueError, TypeError: an array has another size than in the layout, or holds no numbers; the row is then
-                undefined.
-        """
-        plain_end, arrays_end, _ = self.ends
-        row = block.rows[block.count]
-        start = block.count * block.stride
-        plain = _picked(self.plain, tick)
-        try:
-            block.view[start : start + 8 * plain_end] = b"".join(plain)
-        except (ValueError, TypeError, BufferError):  # another memory layout or size: this raises the right error
-            np.concatenate(plain, axis=None, out=row[:plain_end])
-        if self.arrays:
-            np.concatenate(_picked(self.arrays, tick), axis=None, out=row[plain_end:arrays_end])
-        if self.scalars:
-            row[arrays_end:] = _picked(self.scalars, tick)
+    def misfit(self, offset: int) -> str:
+        """Name of the channel that stands at an offset of the row; beyond it: what a tick consists of."""
+        at = 0
+        for channel in self.channels:
+            if at == offset:
+                return channel.name
+            at += channel.size
+        return "its parts"
 
 
-def _picked(chosen: tuple[ChannelGroup, ...], tick: Tick) -> list[Any]:
-    values: list[Any] = []
-    for group in chosen:
-        values += group.pick(tick)
-    return values
+def _row(tick: Tick, found: Sequence[PlacedChannel]) -> Row:
+    row = Row()
+    for signal, names in _MAPPINGS.items():
+        for name in names if getattr(tick, signal) is not None else ():
+            keys: Mapping[str, Any] = attrgetter(f"{signal}.{name}")(tick)
+            row.mapping((signal, name), tuple(keys))
+    row.items(("reference", "tasks"), len(tick.reference.tasks))
+    for index, task in enumerate(tick.reference.tasks):
+        row.text(("reference", "tasks", index, "frame"), task.frame)
+    for path in _absent(tick):
+        row.none(path)
+    offset = 0
+    for placed in found:
+        if placed.channel.shape:
+            row.array(placed.path, offset, placed.channel.size)
+        else:
+            row.number(placed.path, offset)
+        offset += placed.channel.size
+    return row
 
 
-def _is_plain(group: ChannelGroup, tick: Tick) -> bool:
-    samples = [np.asarray(value) for value in group.pick(tick)]
-    return all(sample.dtype == np.float64 and sample.flags.c_contiguous for sample in samples)
+def _absent(tick: Tick) -> list[Path]:
+    """Places of a tick that are None, where others have channels."""
+    found: list[Path] = [] if tick.truth is not None else [("truth",)]
+    for signal, name in _OPTIONAL:
+        part = getattr(tick, signal)
+        if part is not None and getattr(part, name) is None:
+            found.append((signal, name))
+    for index, task in enumerate(tick.reference.tasks):
+        path: Path = ("reference", "tasks", index)
+        if task.rotation is None:
+            found.append((*path, "rotation"))
+        if task.tuning is None:
+            found.append((*path, "tuning"))
+        elif task.tuning.linear_range is None:
+            found.append((*path, "tuning", "linear_range"))
+    return found
 
 
 class Block:
@@ -83,12 +99,18 @@ class Block:
     def __init__(self, layout: RowLayout, phase: str, size: int) -> None:
         self.layout, self.phase = layout, phase
         self.times = np.empty(size)
-        self.rows = np.empty((size, layout.ends[-1]))
-        self.view = self.rows.data.cast("B")
-        """the bytes of the rows"""
-        self.stride = 8 * layout.ends[-1]
-        """bytes per row"""
+        self.rows = np.empty((size, layout.row.width))
         self.count = 0
+        self._fill = layout.row.fill
+
+    def add(self, tick: Tick) -> bool:
+        """Copies a tick into the next row. False: the block is full, or the tick has another layout or phase."""
+        count = self.count
+        if count == len(self.times) or tick.reference.phase != self.phase or self._fill(tick, self.rows, count) >= 0:
+            return False
+        self.times[count] = tick.measurement.time
+        self.count = count + 1
+        return True
 
     def columns(self) -> dict[str, Array]:
         """Channel as logged → (count, …) values."""

@@ -9,15 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
-from operator import attrgetter, itemgetter
-from typing import Any
 
 import numpy as np
 
 from pliant.errors import ConfigError, ShapeError
 from pliant.signals import TaskReference, Tick
-from pliant.telemetry.channels import Channel, ChannelGroup, Groups
-from pliant.telemetry.contact_channels import contact_groups
+from pliant.telemetry.channels import Channel, Key, Path, PlacedChannel
+from pliant.telemetry.contact_channels import contact_channels
 from pliant.telemetry.info import RunInfo
 
 SIGNALS = ("measurement", "estimate", "reference", "command", "truth")
@@ -44,39 +42,8 @@ DIAGNOSTICS = (
 """Default units of diagnostics; a recorder's own table has priority."""
 
 
-def signature(tick: Tick) -> tuple[Any, ...]:
-    """Determines the channels of a tick: two ticks with the same signature have the same channels."""
-    measurement, estimate, reference, truth = tick.measurement, tick.estimate, tick.reference, tick.truth
-    return (
-        tuple(measurement.wrenches),
-        tuple(estimate.wrenches),
-        tuple(estimate.contacts),
-        tuple(estimate.environments),
-        tuple(estimate.surfaces),
-        estimate.disturbance is None,
-        tuple([_task_signature(task) for task in reference.tasks]),
-        reference.posture is None,
-        tuple(reference.diagnostics or ()),  # None, which is none, is refused where channels are made
-        tuple(tick.command.diagnostics or ()),
-        None
-        if truth is None
-        else (
-            tuple(truth.positions),
-            tuple(truth.rotations),
-            tuple(truth.wrenches),
-            tuple(truth.objects),
-            truth.limit_excess is None,
-        ),
-    )
-
-
-def _task_signature(task: TaskReference) -> tuple[Any, ...]:
-    tuning = task.tuning
-    return task.frame, task.rotation is None, tuning is None, tuning is None or tuning.linear_range is None
-
-
-def groups(tick: Tick, info: RunInfo, units: Sequence[Channel] = ()) -> Groups:
-    """The channels of ticks like this one.
+def channels_of(tick: Tick, info: RunInfo, units: Sequence[Channel] = ()) -> list[PlacedChannel]:
+    """The channels of ticks like this one: arrays of the signals, arrays of diagnostics, scalars.
 
     Args:
         tick: an example.
@@ -88,21 +55,21 @@ def groups(tick: Tick, info: RunInfo, units: Sequence[Channel] = ()) -> Groups:
         ShapeError: a diagnostic is neither a number nor an array of numbers.
     """
     joints = joint_labels(info, tick.measurement.q.shape[0])
-    signals = [*_fixed(tick, joints), *_wrenches(tick), *_tasks(tick), *_truth(tick, joints)]
-    arrays: list[ChannelGroup] = []
-    scalars: list[ChannelGroup] = []
+    arrays = [*_fixed(tick, joints), *_wrenches(tick), *_tasks(tick), *_truth(tick, joints)]
+    surfaces, contacts = contact_channels(tick.estimate)
+    arrays += surfaces
+    scalars: list[PlacedChannel] = []
     for name in ("command", "reference"):
         more_arrays, more_scalars = _diagnostics(tick, name, (*units, *DIAGNOSTICS))
         arrays += more_arrays
         scalars += more_scalars
-    scalars.append(ChannelGroup(lambda tick: (tick.guard,), (Channel("guard/fault", "1"),)))
-    if contacts := tuple(tick.estimate.contacts):
-        named = tuple(Channel(f"estimate/{frame}/contact", "1") for frame in contacts)
-        scalars.append(_mapping("estimate.contacts", contacts, named))
-    more_arrays, more_scalars = contact_groups(tick.estimate)
-    signals, scalars = signals + more_arrays, scalars + more_scalars
-    _check_unique([channel.name for group in (*signals, *arrays, *scalars) for channel in group.channels])
-    return Groups(tuple(signals), tuple(arrays), tuple(scalars))
+    scalars.append(PlacedChannel(("guard",), Channel("guard/fault", "1")))
+    for frame in tick.estimate.contacts:
+        path: Path = ("estimate", "contacts", Key(frame))
+        scalars.append(PlacedChannel(path, Channel(f"estimate/{frame}/contact", "1")))
+    found = [*arrays, *scalars, *contacts]
+    _check_unique([placed.channel.name for placed in found])
+    return found
 
 
 def joint_labels(info: RunInfo, n: int) -> tuple[str, ...]:
@@ -116,7 +83,7 @@ def axis_labels(size: int) -> tuple[str, ...]:
     return spatial[:size] if size in (3, 6) else tuple(str(i) for i in range(size))
 
 
-def _fixed(tick: Tick, joints: tuple[str, ...]) -> list[ChannelGroup]:
+def _fixed(tick: Tick, joints: tuple[str, ...]) -> list[PlacedChannel]:
     fields = [
         ("measurement", "q", _JOINT),
         ("measurement", "v", _JOINT_RATE),
@@ -133,70 +100,62 @@ def _fixed(tick: Tick, joints: tuple[str, ...]) -> list[ChannelGroup]:
         fields.append(("estimate", "disturbance", _TORQUE))
     if tick.reference.posture is not None:
         fields.append(("reference", "posture", _JOINT))
-    channels = tuple(Channel(f"{signal}/{field}", unit, (len(joints),), joints) for signal, field, unit in fields)
-    return [ChannelGroup(attrgetter(*[f"{signal}.{field}" for signal, field, _ in fields]), channels)]
+    return [
+        PlacedChannel((signal, field), Channel(f"{signal}/{field}", unit, (len(joints),), joints))
+        for signal, field, unit in fields
+    ]
 
 
-def _wrenches(tick: Tick) -> list[ChannelGroup]:
-    found: list[ChannelGroup] = []
+def _wrenches(tick: Tick) -> list[PlacedChannel]:
+    found: list[PlacedChannel] = []
     for signal in ("measurement", "estimate", "truth"):
         part = getattr(tick, signal)
-        if part is not None and part.wrenches:
-            frames = tuple(part.wrenches)
-            named = tuple(Channel(f"{signal}/{frame}/wrench", _WRENCH, (6,), axis_labels(6)) for frame in frames)
-            found.append(_mapping(f"{signal}.wrenches", frames, named))
+        for frame in part.wrenches if part is not None else ():
+            channel = Channel(f"{signal}/{frame}/wrench", _WRENCH, (6,), axis_labels(6))
+            found.append(PlacedChannel((signal, "wrenches", Key(frame)), channel))
     return found
 
 
-def _tasks(tick: Tick) -> list[ChannelGroup]:
-    found: list[ChannelGroup] = []
-    for index, task in enumerate(tick.reference.tasks):
-        found.append(_task(index, task))
-        if task.rotation is not None:
-            found.append(_task_rotation(index, task.frame))
-    return found
+def _tasks(tick: Tick) -> list[PlacedChannel]:
+    return [placed for index, task in enumerate(tick.reference.tasks) for placed in _task(index, task)]
 
 
-def _task_rotation(index: int, frame: str) -> ChannelGroup:
-    """A group of its own: matrices from pinocchio have the memory layout of Fortran."""
-    channel = Channel(f"reference/{frame}/rotation", "1", (3, 3))
-    return ChannelGroup(lambda tick: (tick.reference.tasks[index].rotation,), (channel,))
-
-
-def _task(index: int, task: TaskReference) -> ChannelGroup:
+def _task(index: int, task: TaskReference) -> list[PlacedChannel]:
     fields = (("position", "m", 3), ("velocity", _TWIST, 6), ("acceleration", _ACCELERATION, 6), ("wrench", _WRENCH, 6))
-    channels = [Channel(f"reference/{task.frame}/{name}", unit, (k,), axis_labels(k)) for name, unit, k in fields]
-    names = [name for name, _, _ in fields]
+    path: Path = ("reference", "tasks", index)
+    named = f"reference/{task.frame}"
+    found = [
+        PlacedChannel((*path, name), Channel(f"{named}/{name}", unit, (k,), axis_labels(k))) for name, unit, k in fields
+    ]
     if task.tuning is not None:
-        shape = (task.tuning.axes,)
-        given = [name for name in _TUNING_UNITS if getattr(task.tuning, name) is not None]
-        names += [f"tuning.{name}" for name in given]
-        channels += [
-            Channel(f"reference/{task.frame}/{name}", _TUNING_UNITS[name], shape, axis_labels(shape[0]))
-            for name in given
-        ]
-    pick = attrgetter(*names)
-    return ChannelGroup(lambda tick: pick(tick.reference.tasks[index]), tuple(channels))
+        k = task.tuning.axes
+        for name, unit in _TUNING_UNITS.items():
+            if getattr(task.tuning, name) is not None:
+                channel = Channel(f"{named}/{name}", unit, (k,), axis_labels(k))
+                found.append(PlacedChannel((*path, "tuning", name), channel))
+    if task.rotation is not None:
+        found.append(PlacedChannel((*path, "rotation"), Channel(f"{named}/rotation", "1", (3, 3))))
+    return found
 
 
-def _truth(tick: Tick, joints: tuple[str, ...]) -> list[ChannelGroup]:
+def _truth(tick: Tick, joints: tuple[str, ...]) -> list[PlacedChannel]:
     truth = tick.truth
     if truth is None:
         return []
     fields = [("q", _JOINT), ("v", _JOINT_RATE), ("torque", _TORQUE)]
     if truth.limit_excess is not None:
         fields.append(("limit_excess", _JOINT))
-    channels = tuple(Channel(f"truth/{name}", unit, (len(joints),), joints) for name, unit in fields)
-    found = [ChannelGroup(attrgetter(*[f"truth.{name}" for name, _ in fields]), channels)]
+    found = [
+        PlacedChannel(("truth", name), Channel(f"truth/{name}", unit, (len(joints),), joints)) for name, unit in fields
+    ]
     for field, name, unit, shape in (
         ("positions", "{}/position", "m", (3,)),
         ("rotations", "{}/rotation", "1", (3, 3)),
         ("objects", "objects/{}/pose", "m, 1", (7,)),
     ):
-        keys = tuple(getattr(truth, field))
-        if keys:
-            named = tuple(Channel(f"truth/{name.format(key)}", unit, shape, _labels(shape)) for key in keys)
-            found.append(_mapping(f"truth.{field}", keys, named))
+        for key in getattr(truth, field):
+            channel = Channel(f"truth/{name.format(key)}", unit, shape, _labels(shape))
+            found.append(PlacedChannel(("truth", field, Key(key)), channel))
     return found
 
 
@@ -204,12 +163,12 @@ def _labels(shape: tuple[int, ...]) -> tuple[str, ...]:
     return ("x", "y", "z", "qw", "qx", "qy", "qz") if shape == (7,) else axis_labels(math.prod(shape))
 
 
-def _diagnostics(tick: Tick, signal: str, units: Sequence[Channel]) -> tuple[list[ChannelGroup], list[ChannelGroup]]:
+def _diagnostics(tick: Tick, signal: str, units: Sequence[Channel]) -> tuple[list[PlacedChannel], list[PlacedChannel]]:
     entries = getattr(tick, signal).diagnostics
     if not isinstance(entries, Mapping) or not all(isinstance(name, str) for name in entries):
         raise ShapeError(f"the {signal}'s diagnostics must be a mapping from names to numbers, got {entries!r:.80}")
-    arrays: list[Channel] = []
-    scalars: list[Channel] = []
+    arrays: list[PlacedChannel] = []
+    scalars: list[PlacedChannel] = []
     for name, value in entries.items():
         sample = np.asarray(value)
         if sample.dtype.kind not in "fiub":
@@ -221,8 +180,9 @@ def _diagnostics(tick: Tick, signal: str, units: Sequence[Channel]) -> tuple[lis
         unit, labels = _registered(name, units)
         if not labels and sample.ndim:
             labels = axis_labels(sample.size)
-        (arrays if sample.ndim else scalars).append(Channel(name, unit, sample.shape, labels))
-    return _both(signal, arrays), _both(signal, scalars)
+        channel = Channel(name, unit, sample.shape, labels)
+        (arrays if sample.ndim else scalars).append(PlacedChannel((signal, "diagnostics", Key(name)), channel))
+    return arrays, scalars
 
 
 def _registered(name: str, units: Sequence[Channel]) -> tuple[str, tuple[str, ...]]:
@@ -230,18 +190,6 @@ def _registered(name: str, units: Sequence[Channel]) -> tuple[str, tuple[str, ..
         if fnmatchcase(name, known.name):
             return known.unit, known.labels
     return "", ()
-
-
-def _both(signal: str, channels: list[Channel]) -> list[ChannelGroup]:
-    keys = tuple(channel.name for channel in channels)
-    return [_mapping(f"{signal}.diagnostics", keys, tuple(channels))] if keys else []
-
-
-def _mapping(path: str, keys: tuple[str, ...], channels: tuple[Channel, ...]) -> ChannelGroup:
-    find, pick = attrgetter(path), itemgetter(*keys)
-    if len(keys) == 1:
-        return ChannelGroup(lambda tick: (pick(find(tick)),), channels)
-    return ChannelGroup(lambda tick: pick(find(tick)), channels)
 
 
 def _check_unique(names: list[str]) -> None:
