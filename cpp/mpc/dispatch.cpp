@@ -13,7 +13,7 @@ using Select = const KernelTable* (*)(int, const ModelData&);
 
 struct InstructionSet {
   const char* name;
-  Select select;
+  Select select, select_four;  // copies with eight and with four lanes
   bool runs_here;
 };
 
@@ -21,20 +21,20 @@ const std::vector<InstructionSet>& instruction_sets() {
   static const std::vector<InstructionSet> sets = [] {
     std::vector<InstructionSet> found;  // narrowest first
 #ifdef PLIANT_HAS_NEON
-    found.push_back({"neon", neon::select_kernel, true});
+    found.push_back({"neon", neon::select_kernel, neon_four::select_kernel, true});
 #endif
 #ifdef PLIANT_HAS_SSE2
-    found.push_back({"sse2", sse2::select_kernel, true});
+    found.push_back({"sse2", sse2::select_kernel, sse2_four::select_kernel, true});
 #endif
 #ifdef PLIANT_HAS_AVX2
     __builtin_cpu_init();
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
-    found.push_back({"avx2", avx2::select_kernel, avx2});
+    found.push_back({"avx2", avx2::select_kernel, avx2_four::select_kernel, avx2});
 #endif
 #ifdef PLIANT_HAS_AVX512
     const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-    found.push_back({"avx512", avx512::select_kernel, avx512});
+    found.push_back({"avx512", avx512::select_kernel, avx512_four::select_kernel, avx512});
 #endif
     return found;
   }();
@@ -80,6 +80,9 @@ std::string instruction_set() { return current().name; }
 
 void use_instruction_set(const std::string& name) { chosen.store(&find(name, "use_instruction_set")); }
 
-const KernelTable& kernel(int dof, const ModelData& model) { return *current().select(dof, model); }
+const KernelTable& kernel(int dof, const ModelData& model) {
+  const InstructionSet& s = current();
+  return *(dof <= few_joints ? s.select_four : s.select)(dof, model);
+}
 
 }  // namespace pliant::mpc

@@ -12,16 +12,24 @@ else()
 endif()
 set(PLIANT_MPC_KERNEL_SOURCE ${CMAKE_CURRENT_LIST_DIR}/kernel/engine.cpp)
 
-# One object library PREFIX_isa per copy; their objects go to the variable named by RESULT, and what dispatch.cpp has to
-# know about which there are to PLIANT_MPC_ISA_DEFINITIONS. Further arguments: flags.
+# Two object libraries per instruction set: PREFIX_isa with eight lanes, PREFIX_isa_four with four. Their objects go to
+# the variable named by RESULT, and what dispatch.cpp has to know about which there are to PLIANT_MPC_ISA_DEFINITIONS.
+# Further arguments: flags.
 function(pliant_mpc_kernel prefix result)
   set(objects)
   set(definitions)
   foreach(isa IN LISTS PLIANT_MPC_ISAS)
-    add_library(${prefix}_${isa} OBJECT ${PLIANT_MPC_KERNEL_SOURCE})
-    target_compile_definitions(${prefix}_${isa} PRIVATE PLIANT_ISA=${isa})
-    target_compile_options(${prefix}_${isa} PRIVATE ${PLIANT_MPC_KERNEL_FLAGS} ${PLIANT_MPC_FLAGS_${isa}} ${ARGN})
-    list(APPEND objects $<TARGET_OBJECTS:${prefix}_${isa}>)
+    foreach(copy ${isa} ${isa}_four)
+      set(target ${prefix}_${copy})
+      set(lanes 8)
+      if(copy MATCHES "_four$")
+        set(lanes 4)
+      endif()
+      add_library(${target} OBJECT ${PLIANT_MPC_KERNEL_SOURCE})
+      target_compile_definitions(${target} PRIVATE PLIANT_ISA=${copy} PLIANT_LANES=${lanes})
+      target_compile_options(${target} PRIVATE ${PLIANT_MPC_KERNEL_FLAGS} ${PLIANT_MPC_FLAGS_${isa}} ${ARGN})
+      list(APPEND objects $<TARGET_OBJECTS:${target}>)
+    endforeach()
     string(TOUPPER ${isa} name)
     list(APPEND definitions PLIANT_HAS_${name})
   endforeach()

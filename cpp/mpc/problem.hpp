@@ -82,9 +82,8 @@ struct NodeOutput {
 
 struct Engine;  // opaque: a solver of one instruction set, joint count and state layout
 
-// What one instruction-set copy offers.
+// What one copy offers.
 struct KernelTable {
-  const char* name;
   Engine* (*create)(const ChainData&, const ModelData&, const Options&);
   void (*destroy)(Engine*);
   // One node of the engine, dense; `derivatives` false fills only the values.

@@ -84,10 +84,20 @@ def test_random_chains(seed: int, n: int, case: tuple[str, int, str]) -> None:
     check_node(node, *random_point(node, robot, seed))
 
 
+@given(seed=st.integers(0, 10_000), n=st.integers(3, 4), case=st.sampled_from(CASES))
+def test_chains_of_few_joints(seed: int, n: int, case: tuple[str, int, str]) -> None:
+    kind, dim, axes = case
+    rigid = kind in ("classical", "torque_feedback")
+    robot = random_chain(n, seed)
+    node, _ = node_and_twin(robot, kind, min(dim, 1) if rigid else dim, axes, seed)
+    check_node(node, *random_point(node, robot, seed))
+
+
+@pytest.mark.parametrize("n", [4, 7])
 @pytest.mark.parametrize("dim", [1, 3, 6])
 @pytest.mark.parametrize("axes", AXES)
-def test_exponential_integrator(dim: int, axes: str) -> None:
-    robot = random_chain(7, 11)
+def test_exponential_integrator(dim: int, axes: str, n: int) -> None:
+    robot = random_chain(n, 11)
     node = _mpc.Node(robot.chain, _mpc.Model("force_feedback", dim, axes, integrator="exponential"), 3e-3)
     randomise(node.parameters, 2)
     node.freeze(robot.home)

@@ -119,9 +119,13 @@ def test_converges_from_large_start_errors(kind: str, dim: int) -> None:
     assert converged >= 198
 
 
-@pytest.mark.parametrize(("kind", "dim"), [("force_feedback", 1), ("force_feedback", 3), ("torque_feedback", 1)])
-def test_instruction_sets_agree(kind: str, dim: int) -> None:
-    robot = catalogue_chain("lwr4")
+@pytest.mark.parametrize("name", ["lwr4", "leg3"])
+@pytest.mark.parametrize(
+    ("kind", "dim"), [("force_feedback", 1), ("force_feedback", 3), ("force_feedback", 6), ("torque_feedback", 1)]
+)
+def test_instruction_sets_agree(name: str, kind: str, dim: int) -> None:
+    robot = catalogue_chain(name)
+    n = robot.model.nv
     chosen = _mpc.instruction_set()
     torques = []
     try:
@@ -129,7 +133,7 @@ def test_instruction_sets_agree(kind: str, dim: int) -> None:
             _mpc.use_instruction_set(isa)
             solver, x0 = polishing(robot, kind, dim)
             rng = np.random.default_rng(4)
-            torques.append(np.array([solver.solve(noisy(x0, 7, rng)).us[0] for _ in range(50)]))
+            torques.append(np.array([solver.solve(noisy(x0, n, rng)).us[0] for _ in range(50)]))
     finally:
         _mpc.use_instruction_set(chosen)
     for other in torques[1:]:
@@ -210,7 +214,7 @@ def test_feedback_gain_takes_most_of_a_disturbance() -> None:
     assert np.linalg.norm(left) < 0.25 * np.linalg.norm(second.us[0] - first.us[0])
 
 
-@pytest.mark.parametrize("n", [1, 2, 5, 8])
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 8])
 def test_any_number_of_joints(n: int) -> None:
     robot = random_chain(n, 30 + n, prismatic=0.0)
     solver, x0 = polishing(robot, "force_feedback", 1)

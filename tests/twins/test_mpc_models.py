@@ -42,6 +42,13 @@ def test_three_joints(kind: str, dim: int, axes: str) -> None:
     assert_same(catalogue_chain("leg3"), kind, dim, axes, seed=4)
 
 
+@given(seed=st.integers(0, 10_000), n=st.integers(2, 4), case=st.sampled_from(CASES))
+def test_chains_of_few_joints(seed: int, n: int, case: tuple[str, int, str]) -> None:
+    kind, dim, axes = case
+    rigid = kind in ("classical", "torque_feedback")  # one joint cannot keep three components rigid
+    assert_same(random_chain(n, seed), kind, min(dim, 1) if rigid else dim, axes, seed)
+
+
 @given(seed=st.integers(0, 10_000), n=st.integers(6, 8), case=st.sampled_from(CASES))
 def test_random_chains(seed: int, n: int, case: tuple[str, int, str]) -> None:
     kind, dim, axes = case

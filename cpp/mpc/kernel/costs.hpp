@@ -89,8 +89,8 @@ PLIANT_INLINE void tool_cost(const ToolResiduals& r, bool derivatives, NodeValue
     }
     n.Lxx[i].block[0] += qq;
     n.Lxx[i].block[1] += qv;
-    n.Lxx[8 + i].block[0] += vq;
-    n.Lxx[8 + i].block[1] += vv;
+    n.Lxx[L::velocity + i].block[0] += vq;
+    n.Lxx[L::velocity + i].block[1] += vv;
   }
 }
 
@@ -104,7 +104,7 @@ PLIANT_INLINE void state_cost(const Chain& chain, const Stage& s, const Row<L>& 
 #pragma GCC unroll 1
   for (int i = 0; i < L::J; ++i) {
     n.Lxx[i].add(i, s.q_weight[i]);
-    n.Lxx[8 + i].add(8 + i, s.v_weight[i]);
+    n.Lxx[L::velocity + i].add(L::velocity + i, s.v_weight[i]);
   }
 }
 

@@ -1,5 +1,5 @@
-// One instruction-set copy of the core. Compiled several times, each with its own PLIANT_ISA and compiler flags; the
-// only symbol that leaves it is select_kernel().
+// One copy of the core: an instruction set and a number of lanes. Compiled several times, each with its own PLIANT_ISA,
+// PLIANT_LANES and compiler flags; the only symbol that leaves it is select_kernel().
 #include "../kernels.hpp"
 #include "plan.hpp"
 
@@ -147,30 +147,13 @@ void placement(const ChainData& data, bool contact, const double* q, double* R, 
   p[2] = f.p.z;
 }
 
-#define PLIANT_STRING_(x) #x
-#define PLIANT_STRING(x) PLIANT_STRING_(x)
-
 template <class L>
 const KernelTable* table() {
-  static constexpr KernelTable t = {PLIANT_STRING(PLIANT_ISA),
-                                    create<L>,
-                                    destroy<L>,
-                                    evaluate<L>,
-                                    time_node<L>,
-                                    freeze<L>,
-                                    set_plan<L>,
-                                    get_plan<L>,
-                                    shift<L>,
-                                    reset<L>,
-                                    quasi_static<L>,
-                                    solve<L>,
-                                    get_feedback<L>,
-                                    get_multipliers<L>,
-                                    set_multipliers<L>,
-                                    tool_path<L>,
-                                    gravity_of<L::J>,
-                                    mass_matrix_of<L::J>,
-                                    placement<L::J>};
+  static constexpr KernelTable t = {
+      create<L>,        destroy<L>,           evaluate<L>,        time_node<L>,       freeze<L>,
+      set_plan<L>,      get_plan<L>,          shift<L>,           reset<L>,           quasi_static<L>,
+      solve<L>,         get_feedback<L>,      get_multipliers<L>, set_multipliers<L>, tool_path<L>,
+      gravity_of<L::J>, mass_matrix_of<L::J>, placement<L::J>};
   return &t;
 }
 
@@ -186,7 +169,11 @@ const KernelTable* table_for(const ModelData& model) {
 }  // namespace
 
 const KernelTable* select_kernel(int dof, const ModelData& model) {
-  return dof <= 7 ? table_for<7>(model) : table_for<8>(model);
+  // With four lanes a joint less would save little and cost the time to compile five layouts more.
+  if constexpr (lane_count > 4) {
+    if (dof < lane_count) return table_for<lane_count - 1>(model);
+  }
+  return table_for<lane_count>(model);
 }
 
 }  // namespace pliant::mpc::PLIANT_ISA

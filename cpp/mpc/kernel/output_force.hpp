@@ -62,7 +62,7 @@ PLIANT_INLINE void output_force_tangent(const ModelData& model, const Stage& s, 
 template <class L>
 PLIANT_INLINE void add_filtered_residuals(NodeValues<L>& n, int i, const Row<L>& row_x, double weight, double residual,
                                           double weight_w, double residual_w) {
-  const int lane_torque = 16 + i;
+  const int lane_torque = L::rest + i;
   const double both = weight + weight_w;
   add_scaled(n.Lx, row_x, weight * residual + weight_w * residual_w);
   n.Lx.add(lane_torque, weight * residual);

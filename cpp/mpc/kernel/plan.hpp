@@ -52,7 +52,7 @@ template <class L>
 void get_multipliers(const Engine* engine, double* out) {
   for (int k = 0; k < solver<L>(engine).multipliers.count; ++k, out += multipliers_per_node) {
     const BoundVector& y = solver<L>(engine).multipliers[k];
-    for (int i = 0; i < max_joints; ++i) out[i] = y.torque[i];
+    for (int i = 0; i < max_joints; ++i) out[i] = i < lane_count ? y.torque[i] : 0;
     for (int c = 0; c < max_contact; ++c) out[max_joints + c] = y.force[c];
     for (int c = 0; c < 3; ++c) out[max_joints + max_contact + c] = y.cone[c];
   }
@@ -62,7 +62,7 @@ template <class L>
 void set_multipliers(Engine* engine, const double* in) {
   for (int k = 0; k < solver<L>(engine).multipliers.count; ++k, in += multipliers_per_node) {
     BoundVector& y = solver<L>(engine).multipliers[k];
-    for (int i = 0; i < max_joints; ++i) y.torque.set(i, in[i]);
+    for (int i = 0; i < lane_count; ++i) y.torque.set(i, in[i]);
     for (int c = 0; c < max_contact; ++c) y.force[c] = in[max_joints + c];
     for (int c = 0; c < 3; ++c) y.cone[c] = in[max_joints + max_contact + c];
   }

@@ -68,7 +68,7 @@ PLIANT_INLINE void project(const Row<L>* P, const Step<L>& s, Projected<L>& g) {
   for (int i = 0; i < J; ++i) {
     g.GP[i] = zero_row<L>();
     add_scaled(g.GP[i], P[i], s.dt * s.dt);
-    add_scaled(g.GP[i], P[8 + i], s.dt);
+    add_scaled(g.GP[i], P[L::velocity + i], s.dt);
   }
 #pragma GCC unroll 6
   for (int f = 0; f < L::M; ++f) {
@@ -110,11 +110,11 @@ template <class L>
     const double pass = 1 - s.alpha;
 #pragma GCC unroll 1
     for (int i = 0; i < J; ++i) {
-      Quu[i] = e.Luu[i] + P[16 + i].block[2] * (pass * pass);
+      Quu[i] = e.Luu[i] + P[L::rest + i].block[2] * (pass * pass);
       Qux[i] = e.Lux[i];
-      add_scaled(Qux[i], times_E(P[16 + i], s), pass);
+      add_scaled(Qux[i], times_E(P[L::rest + i], s), pass);
 #pragma GCC unroll 8
-      for (int j = 0; j < J; ++j) add_scaled(Qux[i], t.rate_x[j], pass * g.GP[j][16 + i]);
+      for (int j = 0; j < J; ++j) add_scaled(Qux[i], t.rate_x[j], pass * g.GP[j][L::rest + i]);
     }
   } else {
     Lanes HU[L::rates];  // GᵀPG ∂z/∂u
@@ -147,11 +147,11 @@ template <class L>
       continue;
     }
     Row<L> left = P[r];
-    if (r >= 8 && r < 8 + J) add_scaled(left, P[r - 8], s.dt);
+    if (r >= L::velocity && r < L::velocity + J) add_scaled(left, P[r - L::velocity], s.dt);
     if constexpr (L::has_torque)
-      if (r >= 16) scale(left, s.alpha);
+      if (r >= L::rest) scale(left, s.alpha);
     Row<L> row = times_E(left, s);
-#pragma GCC unroll 3
+#pragma GCC unroll 4
     for (int b = 0; b < L::blocks; ++b) row.block[b] += e.Lxx[r].block[b];
 #pragma GCC unroll 14
     for (int j = 0; j < L::rates; ++j) {

@@ -1,30 +1,31 @@
-// Eight doubles side by side, one lane per joint, on whatever vector width the copy is compiled for.
+// Eight doubles side by side (four in the copy for robots of up to four joints), one lane per joint, on whatever vector
+// width the copy is compiled for.
 // GCC and Clang vector extensions; every function is forced inline so that no vector type crosses a call.
 #pragma once
 #include <math.h>
 #include <stdint.h>
 
-#ifndef PLIANT_ISA
-#error "the build defines PLIANT_ISA (sse2, neon, avx2, avx512): name of the instruction set and of the namespace"
+#if !defined(PLIANT_ISA) || !defined(PLIANT_LANES)
+#error "the build defines PLIANT_LANES (8 or 4) and PLIANT_ISA (avx2, avx2_four, ...), the namespace of the copy"
 #endif
 #define PLIANT_INLINE [[gnu::always_inline]] inline
 
 namespace pliant::mpc::PLIANT_ISA {
 
+constexpr int lane_count = PLIANT_LANES;
 #if defined(__AVX512F__)
-constexpr int native_width = 8;
+constexpr int native_width = lane_count;
 #elif defined(__AVX__)
 constexpr int native_width = 4;
 #else
 constexpr int native_width = 2;
 #endif
-constexpr int lane_count = 8;
 constexpr int part_count = lane_count / native_width;
 
 typedef double Native __attribute__((vector_size(8 * native_width)));
 typedef int64_t NativeMask __attribute__((vector_size(8 * native_width)));
 
-struct alignas(64) Lanes {
+struct alignas(8 * lane_count) Lanes {
   Native part[part_count];
 
   PLIANT_INLINE double operator[](int i) const { return part[i / native_width][i % native_width]; }
@@ -129,7 +130,10 @@ PLIANT_INLINE Lanes shift_up(const Lanes& a) {
 }
 
 // Σ over the lanes, in the same order whatever the width.
-PLIANT_INLINE double sum(const Lanes& a) { return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7])); }
+PLIANT_INLINE double sum(const Lanes& a) {
+  if constexpr (lane_count == 4) return (a[0] + a[2]) + (a[1] + a[3]);
+  return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
+}
 PLIANT_INLINE double largest(const Lanes& a) {
   double m = a[0];
 #pragma GCC unroll 8
@@ -141,20 +145,20 @@ PLIANT_INLINE double largest(const Lanes& a) {
 PLIANT_INLINE Lanes sum_outward(Lanes a) {
   a += shift_down<1>(a);
   a += shift_down<2>(a);
-  a += shift_down<4>(a);
+  if constexpr (lane_count > 4) a += shift_down<4>(a);
   return a;
 }
 // ... and over this joint and all before it (what moves a link).
 PLIANT_INLINE Lanes sum_inward(Lanes a) {
   a += shift_up<1>(a);
   a += shift_up<2>(a);
-  a += shift_up<4>(a);
+  if constexpr (lane_count > 4) a += shift_up<4>(a);
   return a;
 }
 
-alignas(64) constexpr double lane_number[lane_count] = {0, 1, 2, 3, 4, 5, 6, 7};
+alignas(64) constexpr double lane_number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-PLIANT_INLINE Lanes load(const double* p) { return *reinterpret_cast<const Lanes*>(p); }  // 64-byte aligned
+PLIANT_INLINE Lanes load(const double* p) { return *reinterpret_cast<const Lanes*>(p); }  // aligned like Lanes
 PLIANT_INLINE void store(double* p, const Lanes& a) { *reinterpret_cast<Lanes*>(p) = a; }
 
 // Lanes from `first` on are taken from `from`, those before it from `before`.

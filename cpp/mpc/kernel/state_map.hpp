@@ -11,8 +11,8 @@ struct StateMap {
   int dim() const { return 2 * dof + extra; }
   int lane(int i) const {
     if (i < dof) return i;
-    if (i < 2 * dof) return 8 + i - dof;
-    return L::has_torque ? 16 + i - 2 * dof : L::force_lane(i - 2 * dof);
+    if (i < 2 * dof) return L::velocity + i - dof;
+    return L::has_torque ? L::rest + i - 2 * dof : L::force_lane(i - 2 * dof);
   }
   Row<L> pack(const double* x) const {
     Row<L> r = zero_row<L>();

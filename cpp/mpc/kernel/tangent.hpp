@@ -53,18 +53,18 @@ PLIANT_INLINE void times_tangent(const Row<L>& r, const Tangent<L>& t, const Ste
 template <class L>
 PLIANT_INLINE Row<L> propagate(const Tangent<L>& t, const Step<L>& s, const Row<L>& dx, const Lanes& du,
                                const Row<L>& gap) {
-  alignas(64) double rate[16] = {};
+  alignas(64) double rate[lane_count + max_contact] = {};
 #pragma GCC unroll 1
   for (int j = 0; j < L::rates; ++j) {
     Lanes products = t.rate_x[j].block[0] * dx.block[0];
-#pragma GCC unroll 2
+#pragma GCC unroll 3
     for (int b = 1; b < L::blocks; ++b) products += t.rate_x[j].block[b] * dx.block[b];
     if constexpr (!L::has_torque) products += t.rate_u[j] * du;
     rate[j] = sum(products);
   }
   const Lanes acceleration = load(rate);
   Row<L> next = gap;
-#pragma GCC unroll 3
+#pragma GCC unroll 4
   for (int b = 0; b < L::blocks; ++b) next.block[b] += dx.block[b];
   if constexpr (L::has_torque) next.block[2] += (du - dx.block[2]) * (1 - s.alpha);
   next.block[0] += s.dt_joint * dx.block[1] + s.dt2_joint * acceleration;

@@ -1,4 +1,4 @@
-// Sine and cosine of eight angles at once: reduction to |r| ≤ π/4 with π/2 in three pieces (Cody and Waite), then the
+// Sine and cosine of all lanes at once: reduction to |r| ≤ π/4 with π/2 in three pieces (Cody and Waite), then the
 // minimax polynomials of the freely distributable libm. Error below 2 units in the last place for |x| < 1e5 rad.
 #pragma once
 #include "simd.hpp"

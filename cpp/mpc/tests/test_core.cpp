@@ -57,14 +57,15 @@ void solve_repeatedly(int dof, const ModelData& m, bool bounded, const char* nam
 }
 
 void run() {
-  for (int dof : {1, 3, 7, 8})
+  for (int dof : {1, 3, 4, 7, 8})
     for (bool bounded : {false, true}) {
       solve_repeatedly(dof, model(Kind::force_feedback, 1, Axes::world, Integrator::euler), bounded, "force 1");
       solve_repeatedly(dof, model(Kind::force_feedback, 1, Axes::local, Integrator::exponential), bounded, "force exp");
       solve_repeatedly(dof, model(Kind::free, 0, Axes::world, Integrator::euler), bounded, "free");
-      if (dof < 7) continue;
+      if (dof < 4) continue;
       solve_repeatedly(dof, model(Kind::force_feedback, 3, Axes::surface, Integrator::euler), false, "force 3");
       solve_repeatedly(dof, model(Kind::force_feedback, 6, Axes::world, Integrator::euler), false, "force 6");
+      if (dof < 7) continue;
       solve_repeatedly(dof, model(Kind::force_feedback, 3, Axes::local, Integrator::euler), false, "sliding 3", 0.3);
       solve_repeatedly(dof, model(Kind::force_feedback, 6, Axes::surface, Integrator::euler), false, "sliding 6", 0.3);
       solve_repeatedly(dof, model(Kind::classical, 1, Axes::world, Integrator::euler), bounded, "classical 1");
