@@ -1,5 +1,5 @@
 """Damping of a motion against that of its reference: it takes energy at one rate in each direction, and free axes have
-none; a late loop is suggested one."""
+none."""
 
 from __future__ import annotations
 
@@ -12,13 +12,11 @@ import pytest
 from pliant.axis_modes import AxisModes
 from pliant.controllers import FrameTask, Stack
 from pliant.controllers.damping import Damping
-from pliant.entries import Believed
 from pliant.errors import ConfigError
 from pliant.rigid_body import mass_matrix
 from pliant.robot import Robot, Tool
 from pliant.signals import Estimate, ImpedanceTuning, Reference, TaskReference
 from pliant.spatial import Array, exp3
-from pliant.wiring.recipes import RECIPES
 
 RATE = 50.0  # 1/s
 ARM = Robot.load("panda", tool=Tool())
@@ -74,15 +72,3 @@ def test_what_no_damper_has_is_refused(name: str, value: float) -> None:
     wrong: dict[str, Any] = {name: value}
     with pytest.raises(ConfigError, match=f"{name} must be finite and not negative"):
         Damping(**wrong)
-
-
-def test_a_late_loop_damps_as_fast_as_it_answers() -> None:
-    entry = RECIPES["haptic"]
-
-    def suggested(late: float) -> float:
-        believed = Believed(("tool",), 1e-3, presses="tool", computation_delay=late - 1e-3)
-        return entry.suggest(ARM, entry.default, believed).impedance.motion_damping
-
-    assert suggested(1e-3) == 0.0
-    assert suggested(7e-3) == pytest.approx(0.4 / 7e-3)
-    assert suggested(14e-3) == pytest.approx(0.4 / 14e-3)

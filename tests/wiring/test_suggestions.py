@@ -16,18 +16,6 @@ from pliant.wiring.plugins import entry_of
 from pliant.wiring.registry import find_controller
 
 
-def test_force_is_regulated_ten_times_slower_than_the_loop_answers(leg3: Robot) -> None:
-    """k_I ≤ 0.1 / (period + both delays), 1/s; a loop that is quick enough keeps its own."""
-    entry = find_controller("haptic")
-    own = entry.default.exploration.gain  # type: ignore[attr-defined]
-    late = Believed(("foot",), 1e-3, presses="foot", sensing_delay=2e-3, computation_delay=4e-3)
-    gain = entry.suggest(leg3, entry.default, late).exploration.gain  # type: ignore[attr-defined]
-    assert gain == pytest.approx(0.1 / 7e-3)
-    assert gain < own
-    quick = Believed(("foot",), 1e-4, presses="foot")
-    assert entry.suggest(leg3, entry.default, quick).exploration.gain == own  # type: ignore[attr-defined]
-
-
 def test_the_environment_is_looked_for_at_the_frame_that_presses_or_the_first(lwr4: Robot) -> None:
     needs = Needs(environment=True)
     first = estimator_for(needs, lwr4, Believed(("flange", "elbow"), 1e-3), SensorFilters())

@@ -21,10 +21,13 @@ from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExp
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning
 
-_PROMPT = 1e-3  # s; with less delay, no damping of contacts is needed
+_PROMPT = 1e-3  # s; a loop that is later than this is a late one
 _DAMPED = 0.4  # damping of a mass Λ as a multiple of Λ / delay; the limit of stability is π/2
-# largest k_I times the delay of the loop: the force is regulated ten times more slowly than the loop responds
-_SLOWER = 0.1
+_DAMPED_PROMPT = 30.0  # 1/s; damping of the tool on its contact in a prompt loop
+# largest k_I times the delay of the loop; a contact's mode of 80 rad/s with damping ratio 0.5 is unstable at 0.4
+_SLOWER = 0.18
+_SOFTEST = 3e3  # N/m; a contact of which nothing is believed
+_FLOOR = 0.6  # of the stiffness of contact and impedance in series: the lower bound of K̂ in a late loop
 
 
 class HapticConfig(ControllerConfig):
@@ -62,21 +65,40 @@ def _needs(config: HapticConfig) -> Needs:
 
 
 def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticConfig:
-    """The stack that suits; where phases say when to touch, a frame that should and does not goes and looks. In a late
-    loop force is regulated more slowly, k_I is a tenth of 1 / (period and delays) at most, and what differs from the
-    reference's motion is damped with 0.4 / (period and delays), in every direction: the tool on its contact and the arm
-    on its soft rotation are springs that nothing else damps, and a late stiffness drives them."""
+    """The stack that suits; where phases say when to touch, a frame that should and does not goes and looks.
+
+    In a late loop k_I is 0.18 / (period and delays) at most, and K̂ is at least 0.6 of K_0 and the believed stiffness of
+    the surface (3e3 N/m where nothing is believed) in series: force follows the target late there, so that within the
+    window of K̂ each contact seems soft. What differs from the reference's motion is damped with 0.4 / (period and
+    delays), in every direction: the tool on its contact and the arm on its soft rotation are springs that nothing else
+    damps, and a late stiffness drives them. A prompt loop damps with 30 /s, unless the task says its own impedance or
+    the algorithm is the printed one.
+    """
     exploration, impedance = config.exploration, suggest_stack(robot, config.impedance, believed)
     if exploration is not None:
         late = believed.period + believed.sensing_delay + believed.computation_delay
-        if late > _PROMPT:
-            impedance = impedance.model_copy(update={"motion_damping": _DAMPED / late})
-        changes = {
+        changes: dict[str, object] = {
             "gain": min(exploration.gain, _SLOWER / late),
             "seek": exploration.seek or any(believed.phases.values()),
         }
+        own = believed.presses is None or believed.presses in believed.tunings or exploration.mode == "paper"
+        damping = _DAMPED / late if late > _PROMPT else impedance.motion_damping if own else _DAMPED_PROMPT
+        impedance = impedance.model_copy(update={"motion_damping": damping})
+        if late > _PROMPT:
+            changes["stiffness_floor"] = max(exploration.stiffness_floor, _floor(impedance, believed))
         exploration = exploration.model_copy(update=changes)
     return config.model_copy(update={"impedance": impedance, "exploration": exploration})
+
+
+def _floor(impedance: StackConfig, believed: Believed) -> float:
+    """N/m: lower bound of K̂ along the softest translation of the frame that presses; 0 where it has none."""
+    frame = believed.presses or believed.frames[0]
+    tuning = believed.tunings.get(frame) or impedance.impedances().get(frame)
+    stiffness = [] if tuning is None else [float(k) for k in tuning.stiffness[:3] if k > 0.0]
+    if not stiffness:
+        return 0.0
+    contact = believed.stiffness or _SOFTEST
+    return _FLOOR * min(stiffness) * contact / (min(stiffness) + contact)
 
 
 def _filter(source: ReferenceSource[Any], robot: Robot, config: HapticConfig) -> ReferenceSource[Any]:
