@@ -64,6 +64,18 @@ def test_a_file_names_what_is_searched(tmp_path: Path) -> None:
         find_search(study, "nobody")
 
 
+def test_a_search_on_another_robot_starts_from_what_is_suggested_for_that_one(tmp_path: Path) -> None:
+    """The joint damping of plain springs follows the lightest joint; iiwa14's, of the file, is the control."""
+    more = '[variant.other]\nrobot = "ur5e"\n[tune]\njoint_damping = [0.01, 100.0]\n'
+    study = study_of(written(tmp_path, more))
+    changed = find_search(study, "spring", None, {"robot": "ur5e"})
+    assert changed.start == find_search(study, "spring", "other").start
+    assert changed.start["joint_damping"] != pytest.approx(find_search(study, "spring").start["joint_damping"], rel=0.1)
+    assert [(run.robot, run.seed) for run in changed.runs] == [("ur5e", FIRST_SEED), ("ur5e", FIRST_SEED + 1)]
+    with pytest.raises(ConfigError, match="nothing"):
+        find_search(study, "spring", None, {"nothing": 1.0})
+
+
 def test_what_is_worse_costs_more() -> None:
     case = study_of("wipe").case("wipe")
     good = {"force_error": 0.5, "path_error": 0.2, "force_error_max": 2.0, "contact_lost": 0.0}

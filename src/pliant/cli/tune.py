@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -48,9 +47,7 @@ def tune_command(
         PliantError: bad input; nothing was run.
     """
     require_optuna()
-    sought = find_search(get_study(name), controller, case)
-    changes = assigned(assignments)
-    sought = replace(sought, runs=[merged(config, changes) for config in sought.runs])
+    sought = find_search(get_study(name), controller, case, assigned(assignments))
     check_buildable(name, merged(sought.runs[0], sought.changes(sought.start)))
     folder = output_folder(out or study_folder(f"{Path(name).stem}-tune-{re.sub(r'[^A-Za-z0-9_-]+', '-', controller)}"))
     made: list[Trial] = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic
 
@@ -122,3 +123,8 @@ class Study(ABC, Generic[C]):
         """How the parameters of a controller are searched, on the robot and with the delays of a case (None: the
         study's default). Raises ConfigError if the study has no search."""
         raise ConfigError(f"study {self.name!r} cannot be tuned; a study can if it overrides `Study.search`")
+
+    def changed_search(self, controller: str, case: str | None, changes: Mapping[str, Any]) -> ParameterSearch:
+        """The search on runs that are changed. A study whose start follows from the runs overrides this, too."""
+        sought = self.search(controller, case)
+        return replace(sought, runs=[merged(config, changes) for config in sought.runs])

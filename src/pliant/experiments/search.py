@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from pliant.configuration import merged
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 BATCH = 8
 """parameter sets per batch. It is fixed, so that the search does not depend on the number of processes"""
+_UNCHANGED: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,10 @@ class Trial:
     """failure of the first of them"""
 
 
-def find_search(study: Study[Any], controller: str, case: str | None = None) -> ParameterSearch:
-    """How a controller of a study is tuned for a case.
+def find_search(
+    study: Study[Any], controller: str, case: str | None = None, changes: Mapping[str, Any] = _UNCHANGED
+) -> ParameterSearch:
+    """How a controller of a study is tuned for a case. Args: changes: of the case, another robot for example.
 
     Raises:
         ConfigError: the study has no such controller or case, or does not say how it is tuned.
@@ -46,7 +50,7 @@ def find_search(study: Study[Any], controller: str, case: str | None = None) -> 
         raise ConfigError(
             f"study {study.name!r} has no controller {controller!r}; {options(study.controllers, controller)}"
         )
-    return study.search(controller, case)
+    return study.changed_search(controller, case, changes)
 
 
 def search(

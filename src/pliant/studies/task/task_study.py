@@ -62,7 +62,10 @@ class TaskStudy(Study[TaskCase]):
         return config.seed == 0
 
     def search(self, controller: str, case: str | None = None) -> ParameterSearch:
-        config = merged(self.case(case or next(iter(self.cases))), {"controller": controller})
+        return self.changed_search(controller, case, {})
+
+    def changed_search(self, controller: str, case: str | None, changes: Mapping[str, Any]) -> ParameterSearch:
+        config = merged(self.case(case or next(iter(self.cases))), {**changes, "controller": controller})
         return search_of(config, self.searched(config))
 
     @abstractmethod
