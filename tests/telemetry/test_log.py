@@ -147,3 +147,52 @@ def test_a_log_that_does_not_stay_unpacked_reads_the_same(written: bytes, monkey
     for name in usual.channels:
         np.testing.assert_array_equal(usual[name], packed[name])
         np.testing.assert_array_equal(usual.time(name), packed.time(name))
+
+
+def test_a_long_log_stays_in_its_file_and_reads_the_same(
+    written: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual = Log.open(io.BytesIO(written))
+    path = tmp_path / "long.mcap"
+    path.write_bytes(written)
+    monkeypatch.setattr("pliant.telemetry.mcap.file_bytes._HELD", 0)
+    long = Log.open(path)
+    path.unlink()  # it stays open
+    assert not long.truncated
+    assert long.duration == usual.duration
+    for name in usual.channels:
+        np.testing.assert_array_equal(usual[name], long[name])
+        np.testing.assert_array_equal(usual.time(name), long.time(name))
+
+
+@pytest.mark.parametrize("share", [0.3, 0.9])
+def test_a_long_log_that_was_cut_off_is_read_up_to_the_cut(
+    share: float, written: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cut = written[: int(share * len(written))]
+    usual = Log.open(io.BytesIO(cut))
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(cut)
+    monkeypatch.setattr("pliant.telemetry.mcap.file_bytes._HELD", 0)
+    long = Log.open(path)
+    assert long.truncated
+    assert usual.truncated
+    assert set(long.channels) == set(usual.channels)
+    for name in usual.channels:
+        np.testing.assert_array_equal(usual[name], long[name])
+
+
+def test_few_channels_stay_in_memory_and_the_others_are_read_again(
+    written: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    log = Log.open(io.BytesIO(written))
+    first, second = list(log.channels)[:2]
+    held = log[first]
+    assert log[second] is log[second]
+    assert log[first] is held
+    monkeypatch.setattr("pliant.telemetry.log._CACHED", 0)
+    again = Log.open(io.BytesIO(written))
+    held, other = again[first], again[second]
+    assert again[second] is other
+    assert again[first] is not held
+    np.testing.assert_array_equal(again[first], held)

@@ -13,15 +13,16 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, OutputError, options
-from pliant.files import read_file
 from pliant.spatial import Array
 from pliant.telemetry.columns import columns, data_frame
 from pliant.telemetry.info import RunInfo
+from pliant.telemetry.mcap.file_bytes import bytes_of
 from pliant.telemetry.mcap.reader import Contents, Piece, read
 from pliant.telemetry.mcap.topics import FIELDS, PREFIX
 
 CLOCK = "pliant.clock"
 """metadata record of a run whose clock started below zero: MCAP has no such times, so the file's clock is ahead"""
+_CACHED = 64 * 2**20  # bytes of channels that stay in memory; those of a longer log are read again
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,7 @@ class _Stored:
 
 
 class Log:
-    """The contents of one log, in memory.
+    """The contents of one log. What is asked for is read; a long log stays in its file.
 
     `log["measurement/q"]` is an array (n, joints), `log.time("measurement/q")` its times in s.
     """
@@ -113,8 +114,7 @@ class Log:
                 up to the cut.
         """
         name = str(source) if isinstance(source, (str, Path)) else "the log's stream"
-        data = read_file(source) if isinstance(source, (str, Path)) else source.read()
-        contents = read(name, data)
+        contents = read(name, bytes_of(Path(source)) if isinstance(source, (str, Path)) else source.read())
         if "pliant" not in contents.metadata:
             if not contents.complete:
                 raise OutputError(f"{name} is cut off or damaged before anything that pliant could read")
@@ -147,10 +147,14 @@ class Log:
             ConfigError: there is no such channel.
         """
         stored = self._found(name)
-        if name not in self._values:
-            self._values[name] = stored.values()
-            self._values[name].setflags(write=False)
-        return self._values[name]
+        values = self._values.pop(name, None)
+        if values is None:
+            values = stored.values()
+            values.setflags(write=False)
+        self._values[name] = values  # the last that was asked for stands last
+        while sum(one.nbytes for one in self._values.values()) > _CACHED and len(self._values) > 1:
+            del self._values[next(iter(self._values))]
+        return values
 
     def time(self, name: str = "measurement/q") -> Array:
         """Times of a channel's samples, (n,) s since the start of the run.

@@ -18,6 +18,7 @@ from mcap.stream_reader import get_chunk_data_stream
 from mcap_ros2.decoder import DecoderFactory
 
 from pliant.errors import OutputError
+from pliant.telemetry.mcap.file_bytes import FileBytes, HeldBytes
 
 Bytes = npt.NDArray[np.uint8]
 
@@ -25,14 +26,14 @@ _MAGIC = b"\x89MCAP0\r\n"
 _RECORD = struct.Struct("<BQ")  # opcode, length
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
 _TIME = 6  # bytes of a message before its log time
-_KEPT = 256 * 2**20  # bytes of unpacked chunks that stay in memory; of a longer log they are unpacked when asked for
+_KEPT = 160 * 2**20  # bytes of unpacked chunks that stay in memory; those of a longer log are unpacked when asked for
 
 
 @dataclass
 class _Chunk:
     """A chunk of a file: unpacked, or where it stands."""
 
-    file: bytes
+    file: FileBytes
     start: int
     end: int
     data: bytes | None = None
@@ -40,7 +41,7 @@ class _Chunk:
     def unpacked(self) -> bytes:
         if self.data is not None:
             return self.data
-        return _unpacked(Chunk.read(_stream(self.file, self.start, self.end)))
+        return _unpacked(self.file.part(self.start, self.end))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +81,10 @@ class Contents:
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     complete: bool = False
     """False: the file ends or is damaged somewhere"""
+    chunks: list[_Chunk] = field(default_factory=list)
+    """those that stay unpacked"""
     kept: int = 0
-    """bytes of unpacked chunks in memory"""
+    """bytes that the chunks have, unpacked"""
 
     def texts(self, topic: str) -> list[tuple[float, str]]:
         """Time (s) and text of each std_msgs/String on a topic."""
@@ -97,49 +100,63 @@ class Contents:
         return found
 
 
-def read(name: str, data: bytes) -> Contents:
+def read(name: str, file: bytes | FileBytes) -> Contents:
     """Reads a file up to its end or to its first damage.
 
     Args:
         name: of the file, for errors.
-        data: its bytes.
+        file: its bytes, or where they are read from; of a file that is not held they must stay as they are.
 
     Raises:
         OutputError: it is not MCAP.
     """
-    if not data.startswith(_MAGIC):
-        what = "is empty" if not data else "is not an MCAP file (wrong first bytes)"
+    held = HeldBytes(file) if isinstance(file, bytes) else file
+    if held.part(0, len(_MAGIC)) != _MAGIC:
+        what = "is empty" if not held.size else "is not an MCAP file (wrong first bytes)"
         raise OutputError(f"{name} {what}; a pliant log ends in .mcap")
     found, whole = Contents(), False
     with contextlib.suppress(Exception):  # any error of damaged bytes: what was read before is kept
-        for opcode, start, end in _records(data, len(_MAGIC)):
+        for opcode, start, content, crc in _file_records(held):
             if opcode == Opcode.CHUNK:
-                _take(found, _Chunk(data, start, end))
+                _take(found, _Chunk(held, start, start + len(content)), content)
             elif opcode == Opcode.METADATA:
-                record = Metadata.read(_stream(data, start, end))
+                record = Metadata.read(_stream(content))
                 found.metadata[record.name] = record.metadata
             elif opcode == Opcode.DATA_END:
-                record = DataEnd.read(_stream(data, start, end))
-                _check(record.data_section_crc, memoryview(data)[: start - _RECORD.size])
+                _check(DataEnd.read(_stream(content)).data_section_crc, crc)
                 whole = True
             elif opcode == Opcode.FOOTER:
-                footer = Footer.read(_stream(data, start, end))
-                _check(footer.summary_crc, memoryview(data)[footer.summary_start : end - 4])
-                found.complete = whole and data[end:] == _MAGIC
+                footer, end = Footer.read(_stream(content)), start + len(content)
+                _check(footer.summary_crc, zlib.crc32(held.part(footer.summary_start, end - 4)))
+                found.complete = whole and held.part(end, held.size) == _MAGIC
                 break
     return found
 
 
-def _check(crc: int, data: memoryview) -> None:
-    if crc not in (0, zlib.crc32(data)):  # 0: the writer made none
+def _check(wanted: int, found: int) -> None:
+    if wanted not in (0, found):  # 0: the writer made none
         raise ValueError("the checksum does not fit the bytes")
 
 
-def _take(found: Contents, chunk: _Chunk) -> None:
+def _file_records(file: FileBytes) -> Iterator[tuple[int, int, bytes, int]]:
+    """Opcode of each record of a file, where its content begins, its content, and the checksum of all before it."""
+    at, crc = len(_MAGIC), zlib.crc32(_MAGIC)
+    while at < file.size:
+        head = file.part(at, at + _RECORD.size)
+        opcode, length = _RECORD.unpack(head)
+        start, at = at + _RECORD.size, at + _RECORD.size + length
+        if at > file.size:
+            raise ValueError("the file ends within a record")
+        content = file.part(start, at)
+        yield opcode, start, content, crc
+        crc = zlib.crc32(content, zlib.crc32(head, crc))
+
+
+def _take(found: Contents, chunk: _Chunk, packed: bytes) -> None:
     """Adds what a chunk holds: equally built rows at once, anything else message by message."""
-    data = chunk.unpacked()  # a damaged chunk gives nothing at all
-    found.kept += len(data)
-    chunk.data, first = data if found.kept <= _KEPT else None, True
+    data = _unpacked(packed)  # a damaged chunk gives nothing at all
+    _keep(found, chunk, data)
+    first = True
     for opcode, start, end in _records(data, 0):
         if opcode == Opcode.MESSAGE:
             rows = _rows(chunk, data, start - _RECORD.size) if first else []
@@ -150,11 +167,25 @@ def _take(found: Contents, chunk: _Chunk) -> None:
                 return
             first = False
         elif opcode == Opcode.CHANNEL:
-            introduced = Channel.read(_stream(data, start, end))
+            introduced = Channel.read(_stream(data[start:end]))
             found.channels[introduced.id] = introduced
         elif opcode == Opcode.SCHEMA:
-            schema = Schema.read(_stream(data, start, end))
+            schema = Schema.read(_stream(data[start:end]))
             found.schemas[schema.id] = schema
+
+
+def _keep(found: Contents, chunk: _Chunk, data: bytes) -> None:
+    """Keeps a chunk of a file that is held unpacked, or none any more where all together are too large."""
+    if not isinstance(chunk.file, HeldBytes):
+        return
+    found.kept += len(data)
+    if found.kept <= _KEPT:
+        chunk.data = data
+        found.chunks.append(chunk)
+        return
+    for one in found.chunks:
+        one.data = None
+    found.chunks.clear()
 
 
 def _rows(chunk: _Chunk, data: bytes, at: int) -> list[tuple[int, Piece]]:
@@ -194,10 +225,10 @@ def _records(data: bytes, at: int) -> Iterator[tuple[int, int, int]]:
         yield opcode, start, at
 
 
-def _stream(data: bytes, start: int, end: int) -> ReadDataStream:
-    return ReadDataStream(io.BytesIO(data[start:end]))
+def _stream(content: bytes) -> ReadDataStream:
+    return ReadDataStream(io.BytesIO(content))
 
 
-def _unpacked(chunk: Chunk) -> bytes:
-    stream, size = get_chunk_data_stream(chunk, validate_crc=True)
+def _unpacked(packed: bytes) -> bytes:
+    stream, size = get_chunk_data_stream(Chunk.read(_stream(packed)), validate_crc=True)
     return stream.read(size)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import BinaryIO
 
@@ -69,7 +69,8 @@ class McapFile:
         self._channels: dict[tuple[str, str, bytes], Channel] = {}
         self._counts: dict[int, int] = {}
         self._sequence: dict[int, int] = {}
-        self._chunks: list[ChunkIndex] = []
+        self._index = bytearray()
+        self._spans: list[tuple[int, int]] = []
         self._metadata: list[MetadataIndex] = []
         self._compressor = zstandard.ZstdCompressor(level=_ZSTD_LEVEL)
         self._write(_MAGIC)
@@ -123,14 +124,13 @@ class McapFile:
         self._write(record_bytes(DataEnd(self._crc)))  # a byte that changes later shows
         start = self._at
         summary, offsets = b"", b""
-        for opcode, records in (
-            (Opcode.SCHEMA, list(self._schemas.values())),
-            (Opcode.CHANNEL, list(self._channels.values())),
-            (Opcode.STATISTICS, [self._statistics()]),
-            (Opcode.CHUNK_INDEX, self._chunks),
-            (Opcode.METADATA_INDEX, self._metadata),
+        for opcode, group in (
+            (Opcode.SCHEMA, _joined(self._schemas.values())),
+            (Opcode.CHANNEL, _joined(self._channels.values())),
+            (Opcode.STATISTICS, record_bytes(self._statistics())),
+            (Opcode.CHUNK_INDEX, bytes(self._index)),
+            (Opcode.METADATA_INDEX, _joined(self._metadata)),
         ):
-            group = b"".join(record_bytes(record) for record in records)
             if group:
                 offsets += record_bytes(SummaryOffset(opcode, start + len(summary), len(group)))
             summary += group
@@ -207,7 +207,8 @@ class McapFile:
             offsets[channel] = self._at
             body = entries.astype("<u8").tobytes()
             self._write(struct.pack("<BQHI", Opcode.MESSAGE_INDEX, 6 + len(body), channel, len(body)) + body)
-        self._chunks.append(
+        self._spans.append((first, last))
+        self._index += record_bytes(
             ChunkIndex(
                 chunk_length=len(record),
                 chunk_start_offset=chunk_start,
@@ -227,10 +228,14 @@ class McapFile:
             attachment_count=0,
             channel_count=len(self._channels),
             channel_message_counts=dict(self._counts),
-            chunk_count=len(self._chunks),
+            chunk_count=len(self._spans),
             message_count=sum(self._counts.values()),
-            message_end_time=max((chunk.message_end_time for chunk in self._chunks), default=0),
-            message_start_time=min((chunk.message_start_time for chunk in self._chunks), default=0),
+            message_end_time=max((last for _, last in self._spans), default=0),
+            message_start_time=min((first for first, _ in self._spans), default=0),
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )
+
+
+def _joined(records: Iterable[Schema | Channel | MetadataIndex]) -> bytes:
+    return b"".join(record_bytes(record) for record in records)
