@@ -9,7 +9,7 @@ import pytest
 
 from pliant.errors import ConfigError, OutputError, ShapeError
 from pliant.references.source import FrameMotion, TrajectorySource
-from pliant.references.trajectories.rotation import Fixed, QuaternionSpline
+from pliant.references.trajectories.rotation import Fixed, QuaternionSpline, WarpedTurning
 from pliant.references.trajectories.sampled import read_motion
 from pliant.references.trajectories.shapes import lemniscate
 from pliant.references.trajectories.trajectory import Hold
@@ -120,3 +120,11 @@ def test_missing_file_and_wrong_ending(tmp_path: Path) -> None:
     (tmp_path / "bad.npz").write_text("no archive")
     with pytest.raises(ConfigError, match="not a sampled trajectory"):
         read_motion(tmp_path / "bad.npz")
+
+
+def test_a_fixed_orientation_stays_one_when_its_motion_is_eased() -> None:
+    eased = FrameMotion("flange", Hold(np.zeros(3)), np.eye(3)).eased(1.0)
+    assert isinstance(eased.rotation, Fixed)
+    turning = QuaternionSpline(np.array([0.0, 1.0]), np.array([[1.0, 0.0, 0.0, 0.0], [1.0, 0.1, 0.0, 0.0]]))
+    warped = FrameMotion("flange", Hold(np.zeros(3)), turning).eased(1.0)
+    assert isinstance(warped.rotation, WarpedTurning)  # control: one that turns starts from rest

@@ -44,7 +44,9 @@ class FrameMotion:
     def eased(self, seconds: float) -> FrameMotion:
         """The same path, started from rest within `seconds`. The wrench keeps its own clock."""
         warp = EaseIn(seconds)
-        rotation = WarpedTurning(self.rotation, warp) if isinstance(self.rotation, Turning) else self.rotation
+        rotation = self.rotation
+        if isinstance(rotation, Turning) and not isinstance(rotation, Fixed):
+            rotation = WarpedTurning(rotation, warp)
         return replace(self, position=Warped(self.position, warp), rotation=rotation)
 
     def at(self, time: float) -> TaskReference:
