@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -14,6 +13,7 @@ from pliant.frozen import changed
 from pliant.interfaces import CLOCK_ROUNDING, Lookahead, ReferenceSource
 from pliant.references.foreseen import instants
 from pliant.references.landing import SETTLE, Height
+from pliant.references.phase_state import PhaseState as PhaseState
 from pliant.references.preview_rows import (
     ACCELERATION,
     AXES,
@@ -34,23 +34,6 @@ from pliant.references.task_phase import TaskPhase as TaskPhase
 from pliant.robot import Robot
 from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array
-
-
-@dataclass(frozen=True, slots=True)
-class PhaseState:
-    """Which phase the task is in."""
-
-    index: int
-    start: float
-    """s at which it began"""
-    begin: Array
-    """(3,) m reference position at that time"""
-    touch: Array
-    """(3,) m where the frame was when contact began"""
-    height: Height = field(default_factory=Height)
-    """of the surface that was touched above the believed one"""
-    next_look: float = -np.inf
-    """s at which a preview is due"""
 
 
 class PhasedSource(ReferenceSource[PhaseState]):
@@ -131,7 +114,8 @@ class PhasedSource(ReferenceSource[PhaseState]):
                     break
             touched = self.phases[state.index + 1].touches and not phase.touches
             after = self._next(state, start)
-            state = self._landed(state, after, self._position(estimate.q)) if touched else after
+            here = self._position(estimate.q)
+            state = self._landed(state, after, here) if touched else self._lifted(after, here)
         return state
 
     def _landed(self, before: PhaseState, after: PhaseState, here: Array) -> PhaseState:
@@ -171,6 +155,19 @@ class PhasedSource(ReferenceSource[PhaseState]):
         new = self.phases[state.index + 1].touches and not self.phases[state.index].touches
         touch = position if new else state.touch
         return PhaseState(state.index + 1, start, position, touch, state.height, state.next_look)
+
+    def _lifted(self, after: PhaseState, here: Array) -> PhaseState:
+        """The last phase that touches before the tool leaves the surface lifts the reference to where the frame is.
+
+        With a reference inside of a surface that stands otherwise than believed, the motion away from it would begin
+        with one against it. A reference above the frame stays.
+        """
+        now, *later = self.phases[after.index : after.index + 2]
+        if now.axes is None or now.anchor != "surface" or not now.touches or not later or later[0].touches:
+            return after
+        found = float(now.axes.at(0.0).rotation[:, 2] @ (here - now.motion.at(0.0).value))
+        height = after.height.at(after.start)[0]
+        return after if found <= height else changed(after, height=Height(after.start, found, height - found))
 
     def _expected(self, state: PhaseState, time: float) -> PhaseState:
         """The phase at a later time, as far as it is known now."""
