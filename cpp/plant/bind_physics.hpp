@@ -71,9 +71,10 @@ inline bool same_layout(nb::handle model, nb::handle data) {
   bool same = m->nv == nb::cast<int>(model.attr("nv")) && m->ngeom == nb::cast<int>(model.attr("ngeom")) &&
               m->site_bodyid == address_of<Integers>(model, "site_bodyid") && d->ncon == ncon &&
               d->time == nb::cast<double>(data.attr("time"));
-  for (const auto& [name, at] : {std::pair{"qpos", d->qpos}, std::pair{"qvel", d->qvel},
-                                 std::pair{"qfrc_applied", d->qfrc_applied}, std::pair{"qfrc_bias", d->qfrc_bias},
-                                 std::pair{"site_xpos", d->site_xpos}, std::pair{"site_xmat", d->site_xmat}})
+  for (const auto& [name, at] :
+       {std::pair{"qpos", d->qpos}, std::pair{"qvel", d->qvel}, std::pair{"qfrc_applied", d->qfrc_applied},
+        std::pair{"qfrc_bias", d->qfrc_bias}, std::pair{"site_xpos", d->site_xpos},
+        std::pair{"site_xmat", d->site_xmat}, std::pair{"xpos", d->xpos}, std::pair{"xquat", d->xquat}})
     same = same && at == address_of<Numbers>(data, name);
   const nb::object contacts = data.attr("contact");
   for (int k = 0; same && k < ncon; ++k) {

@@ -1,12 +1,14 @@
 // Extension module pliant._plant.
 #include "bind_imperfect_robot.hpp"
 #include "bind_physics.hpp"
+#include "bind_truth.hpp"
 
 using namespace pliant::plant;
 
 NB_MODULE(_plant, m) {
   m.attr("MUJOCO_VERSION") = mjVERSION_HEADER;
   m.def("same_layout", &same_layout, "model"_a, "data"_a);
+  bind_truth(m);
   nb::class_<PyPhysics>(m, "Physics")
       .def(nb::init<nb::object, const std::vector<uintptr_t>&, int, bool, Doubles, Doubles, std::vector<int>,
                     std::vector<int>, const std::vector<SensorRow>&, const std::vector<PushRow>&>(),

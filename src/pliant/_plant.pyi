@@ -44,6 +44,25 @@ class Physics:
         """Holds a torque (n,) within the limits for a period; writes `out`. Returns a bit for each contact frame that
         touches, or -1 where a joint's speed is not finite or not allowed."""
 
+class TruthRow:
+    """What is true of a world of one MuJoCo model, as a row of numbers.
+
+    Raises ValueError: values that do not fit the model.
+    """
+
+    def __init__(
+        self, model: Any, lower: Sequence[float], upper: Sequence[float], sites: Sequence[int], bodies: Sequence[int]
+    ) -> None:
+        """lower, upper: (n,) limits of the joints, which are the model's first ones, rad or m."""
+
+    @property
+    def size(self) -> int:
+        """Numbers in the row: q, v, torque applied, how far beyond its limits each joint is (n each); positions
+        (sites, 3); rotations (sites, 9); position and quaternion of the bodies (bodies, 7)."""
+
+    def read(self, data: Any, out: Array) -> None:
+        """Reads a MuJoCo data of the model into `out` (size,)."""
+
 class ImperfectRobot:
     """An imperfect robot round a perfect one. What it remembers is one row of numbers, `memory`.
 

@@ -26,6 +26,7 @@ from pliant.simulation.mujoco_library import can_look_inside
 from pliant.simulation.python_period import PythonPeriod
 from pliant.simulation.scene import Scene
 from pliant.simulation.stepping import substeps
+from pliant.simulation.truth import TruthReader
 from pliant.simulation.what_touches import WhatTouches
 from pliant.simulation.world import World
 from pliant.spatial import Array, clamp
@@ -161,23 +162,7 @@ class MujocoPlant(Plant[World]):
         return world.ticks * self.period
 
     def truth(self, world: World) -> Truth:
-        n, data, sites, bodies = self._n, world.data, self._site_ids, self._body_ids
-        q = data.qpos[:n].copy()
-        return Truth(
-            time=world.ticks * self.period,
-            q=q,
-            v=data.qvel[:n].copy(),
-            torque=data.qfrc_applied[:n].copy(),
-            positions=dict(zip(self._sites, data.site_xpos.take(sites, 0), strict=True)),
-            rotations=dict(zip(self._sites, data.site_xmat.take(sites, 0).reshape(-1, 3, 3), strict=True)),
-            wrenches=dict(world.wrenches),
-            limit_excess=np.maximum(0.0, np.maximum(self._lower - q, q - self._upper)),
-            objects=dict(
-                zip(self._movable, np.hstack([data.xpos.take(bodies, 0), data.xquat.take(bodies, 0)]), strict=True)
-            )
-            if self._movable
-            else {},
-        )
+        return self._truth.truth(world, world.ticks * self.period)
 
     # ------------------------------------------------------------------ inside
 
@@ -193,8 +178,8 @@ class MujocoPlant(Plant[World]):
         )
         self._sites = {name: self.model.site(name).id for name in frames}
         things = [thing.name for thing in scene.things if can_move(thing)]
-        self._movable = {name: self.model.body(name).id for name in things}
-        self._lower, self._upper = limits_of(self.model, robot)
+        movable = {name: self.model.body(name).id for name in things}
+        self._truth = TruthReader(self.model, *limits_of(self.model, robot), self._sites, movable)
         felt = {s: [f for f in parts.touching_geoms.values() if robot.carries(s.frame, f)] for s in self.sensors}
         geoms = {self.model.geom(geom).id: frame for geom, frame in parts.touching_geoms.items()}
         self._touches = WhatTouches(geoms, self._sites, self.sensors, felt)
@@ -208,8 +193,6 @@ class MujocoPlant(Plant[World]):
             self.joints,
             self.pushes,
         )
-        self._n = robot.n
-        self._site_ids, self._body_ids = (np.array([*ids.values()], np.intp) for ids in (self._sites, self._movable))
         self.compiled = self._compile() if self.explicit is None and can_look_inside() else None
         """its period as one call; None where contacts are explicit or MuJoCo is not the one that pliant was compiled
         for"""

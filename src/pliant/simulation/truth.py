@@ -1,0 +1,74 @@
+"""What is true of a simulated world, for the log."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import mujoco
+import numpy as np
+
+from pliant._plant import TruthRow
+from pliant.signals import Truth
+from pliant.simulation.mujoco_library import can_look_inside
+from pliant.simulation.world import World
+from pliant.spatial import Array
+
+
+class TruthReader:
+    """Reads the truth of worlds of one model: in one compiled call, or in Python where MuJoCo is not the one that
+    pliant was compiled for.
+
+    Args:
+        model: compiled; the robot's joints come first.
+        lower, upper: (n,) limits of the joints, rad (m where they slide).
+        sites: frame → its site, for positions and rotations.
+        bodies: thing → its body, for poses.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        lower: Array,
+        upper: Array,
+        sites: Mapping[str, int],
+        bodies: Mapping[str, int],
+    ) -> None:
+        self._lower, self._upper = lower, upper
+        self._sites, self._bodies = tuple(sites), tuple(bodies)
+        self._site_ids, self._body_ids = (np.array([*ids.values()], np.intp) for ids in (sites, bodies))
+        n, k = len(lower), len(sites)
+        self._n, self._parts = n, (4 * n + 3 * k, 4 * n + 12 * k)
+        self.row = self.in_python
+        """data → numbers of its truth: q, v, torque, excess; positions, rotations, poses"""
+        if can_look_inside():
+            self._row = TruthRow(model, lower.tolist(), upper.tolist(), [*sites.values()], [*bodies.values()])
+            self.row = self._compiled
+
+    def truth(self, world: World, time: float) -> Truth:
+        """The truth of a world at a time in s."""
+        n, (positions, rotations), row = self._n, self._parts, self.row(world.data)
+        return Truth(
+            time,
+            row[:n],
+            row[n : 2 * n],
+            row[2 * n : 3 * n],
+            dict(zip(self._sites, row[4 * n : positions].reshape(-1, 3), strict=True)),
+            dict(zip(self._sites, row[positions:rotations].reshape(-1, 3, 3), strict=True)),
+            dict(world.wrenches),
+            dict(zip(self._bodies, row[rotations:].reshape(-1, 7), strict=True)) if self._bodies else {},
+            row[3 * n : 4 * n],
+        )
+
+    def _compiled(self, data: mujoco.MjData) -> Array:
+        row = np.empty(self._row.size)
+        self._row.read(data, row)
+        return row
+
+    def in_python(self, data: mujoco.MjData) -> Array:
+        """The same numbers without compiled code."""
+        n, sites, bodies = self._n, self._site_ids, self._body_ids
+        q = data.qpos[:n]
+        beyond = np.maximum(0.0, np.maximum(self._lower - q, q - self._upper))
+        poses = np.hstack([data.xpos.take(bodies, 0), data.xquat.take(bodies, 0)])
+        places = (data.site_xpos.take(sites, 0), data.site_xmat.take(sites, 0), poses)
+        return np.concatenate([q, data.qvel[:n], data.qfrc_applied[:n], beyond, *[part.ravel() for part in places]])
