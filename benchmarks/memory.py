@@ -2,7 +2,7 @@
 
     python benchmarks/memory.py --seconds 600
 
-The loop runs for a minute; then the ticks of its last second are recorded over and over, until the log is as long as
+The loop runs for some time; then the ticks of its last second are recorded over and over, until the log is as long as
 asked, and measured. Without figures and without the scene for 3-D viewers.
 """
 
@@ -60,7 +60,7 @@ def main() -> None:
     args = parser.parse_args()
     study = get_study(args.study)
     config = merged(study.case(args.case), {"duration": float(args.seconds)})
-    wired = study.build(config)
+    wired = study.build(merged(config, {"duration": float(args.loop)}))  # its postures take time
     note("built")
     second = round(1.0 / wired.plant.period)
     last = _Last(second, note)

@@ -1,14 +1,15 @@
 // What the C++ tests of every core share: checks that are counted, a source of numbers, and a count of heap calls.
 #pragma once
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
 
 namespace pliant::testing {
 
-inline int allocations = 0;
-inline int failures = 0;
+inline thread_local int allocations = 0;
+inline std::atomic<int> failures{0};
 
 inline void check(bool ok, const char* what, const char* where) {
   if (ok) return;
@@ -18,8 +19,9 @@ inline void check(bool ok, const char* what, const char* where) {
 
 // The exit code of a test.
 inline int result() {
-  std::printf(failures ? "%d checks failed\n" : "all checks passed\n", failures);
-  return failures ? 1 : 0;
+  const int count = failures;
+  std::printf(count ? "%d checks failed\n" : "all checks passed\n", count);
+  return count ? 1 : 0;
 }
 
 // A deterministic source of numbers in (−1, 1).

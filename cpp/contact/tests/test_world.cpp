@@ -118,7 +118,7 @@ void run_tool() {
 }
 
 // The loop stops where the engine blows up, and says after how many steps.
-int steps_taken = 0;
+thread_local int steps_taken = 0;
 void half_step(const void*, void*) {}
 void faster(const void*, void* data) {
   ++steps_taken;
