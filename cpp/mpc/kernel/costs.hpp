@@ -7,19 +7,42 @@
 
 namespace pliant::mpc::PLIANT_ISA {
 
+// The expansion of the costs on the state and on the control alone, to which all others are added.
 template <class L>
-PLIANT_INLINE void clear_cost(NodeValues<L>& n, const Chain& chain) {
-  n.cost = 0;
+PLIANT_INLINE void begin_expansion(const Chain& chain, const Stage& s, const Row<L>& x, const Lanes& u,
+                                   NodeValues<L>& n) {
   n.Lx = zero_row<L>();
-  n.Lu = zero();
+  n.Lx.block[0] = s.q_weight * (x.block[0] - s.q_reference) * chain.is_joint;
+  n.Lx.block[1] = s.v_weight * (x.block[1] - s.v_reference) * chain.is_joint;
 #pragma GCC unroll 1
   for (int k = 0; k < L::size; ++k) n.Lxx[k] = zero_row<L>();
 #pragma GCC unroll 1
   for (int i = 0; i < L::J; ++i) {
-    n.Lux[i] = zero_row<L>();
-    n.Luu[i] = zero();
-    n.Luu[i].set(i, chain.filler[i]);  // joints that are not there: keep the recursion positive definite
+    n.Lxx[i].block[0] = only(i, s.q_weight);
+    n.Lxx[L::velocity + i].block[1] = only(i, s.v_weight);
   }
+  Lanes weight = chain.filler;  // joints that are not there: keep the recursion positive definite
+  n.Lu = zero();
+  if (!s.terminal) {
+    weight += s.u_weight;
+    n.Lu = s.u_weight * (u - s.u_reference);
+  }
+#pragma GCC unroll 1
+  for (int i = 0; i < L::J; ++i) {
+    n.Lux[i] = zero_row<L>();
+    n.Luu[i] = only(i, weight);
+  }
+}
+
+template <class L>
+PLIANT_INLINE double state_cost(const Chain& chain, const Stage& s, const Row<L>& x) {
+  const Lanes dq = (x.block[0] - s.q_reference) * chain.is_joint, dv = (x.block[1] - s.v_reference) * chain.is_joint;
+  return 0.5 * sum(s.q_weight * dq * dq + s.v_weight * dv * dv);
+}
+
+PLIANT_INLINE double control_cost(const Stage& s, const Lanes& u) {
+  const Lanes du = u - s.u_reference;
+  return 0.5 * sum(s.u_weight * du * du);
 }
 
 // Placement and velocity of the tool: residuals r with ∂r/∂q and, for the velocity, ∂r/∂v. Translation and velocity in
@@ -27,12 +50,25 @@ PLIANT_INLINE void clear_cost(NodeValues<L>& n, const Chain& chain) {
 struct ToolResiduals {
   static constexpr int count = 12;  // translation, rotation, linear and angular velocity
   double value[count], weight[count];
-  Lanes by_q[count], by_v[6];
+  Lanes by_q[count];
+  Spatial by_v;
+
+  PLIANT_INLINE void set(int first, const Vec& e, const Vec& w, const Vecs& e_q) {
+    value[first] = e.x;
+    value[first + 1] = e.y;
+    value[first + 2] = e.z;
+    weight[first] = w.x;
+    weight[first + 1] = w.y;
+    weight[first + 2] = w.z;
+    by_q[first] = e_q.x;
+    by_q[first + 1] = e_q.y;
+    by_q[first + 2] = e_q.z;
+  }
 };
 
 template <int J>
-PLIANT_INLINE ToolResiduals tool_residuals(const Chain& chain, const Kinematics& kin, const Velocities& vel,
-                                           const Stage& s) {
+PLIANT_INLINE void tool_residuals(const Chain& chain, const Kinematics& kin, const Velocities& vel, const Stage& s,
+                                  ToolResiduals& r) {
   const Frame tool = frame_on_last_link<J>(kin, chain.tool_rotation, chain.tool_translation);
   Spatial jacobian = at_point(kin.S, tool.p);
   const SpatialVec velocity = at_point(vel.last, tool.p);
@@ -53,69 +89,54 @@ PLIANT_INLINE ToolResiduals tool_residuals(const Chain& chain, const Kinematics&
     linear_q = to_task * linear_q;
     angular_q = to_task * angular_q;
   }
-  const Vec &wt = s.translation_weight, &wr = s.rotation_weight, &wl = s.linear_weight, &wa = s.angular_weight;
-  return {{p.x, p.y, p.z, error.log.x, error.log.y, error.log.z, dv.x, dv.y, dv.z, dw.x, dw.y, dw.z},
-          {wt.x, wt.y, wt.z, wr.x, wr.y, wr.z, wl.x, wl.y, wl.z, wa.x, wa.y, wa.z},
-          {jacobian.lin.x, jacobian.lin.y, jacobian.lin.z, dot(turning, log_rate.row(0)), dot(turning, log_rate.row(1)),
-           dot(turning, log_rate.row(2)), linear_q.x, linear_q.y, linear_q.z, angular_q.x, angular_q.y, angular_q.z},
-          {jacobian.lin.x, jacobian.lin.y, jacobian.lin.z, jacobian.ang.x, jacobian.ang.y, jacobian.ang.z}};
+  r.set(0, p, s.translation_weight, jacobian.lin);
+  r.set(3, error.log, s.rotation_weight, log_rate * turning);
+  r.set(6, dv, s.linear_weight, linear_q);
+  r.set(9, dw, s.angular_weight, angular_q);
+  r.by_v = jacobian;
+}
+
+PLIANT_INLINE double tool_cost(const ToolResiduals& r) {
+  double cost = 0;
+#pragma GCC unroll 12
+  for (int k = 0; k < r.count; ++k) cost += 0.5 * r.weight[k] * r.value[k] * r.value[k];
+  return cost;
 }
 
 template <class L>
-PLIANT_INLINE void tool_cost(const ToolResiduals& r, bool derivatives, NodeValues<L>& n) {
-  constexpr int J = L::J, velocity = 6;
-#pragma GCC unroll 12
-  for (int k = 0; k < r.count; ++k) n.cost += 0.5 * r.weight[k] * r.value[k] * r.value[k];
-  if (!derivatives) return;
+PLIANT_INLINE void expand_tool_cost(const ToolResiduals& r, NodeValues<L>& n) {
+  constexpr int velocity = 6;
+  const Lanes* rows_v = &r.by_v.lin.x;  // the six of a Spatial lie one after the other
+  Lanes of_q[r.count], of_v[velocity];  // the rows times their weights
 #pragma GCC unroll 12
   for (int k = 0; k < r.count; ++k) {
-    const double slope = r.weight[k] * r.value[k];
-    n.Lx.block[0] += r.by_q[k] * slope;
-    if (k >= velocity) n.Lx.block[1] += r.by_v[k - velocity] * slope;
+    of_q[k] = r.by_q[k] * r.weight[k];
+    n.Lx.block[0] += of_q[k] * r.value[k];
   }
-#pragma GCC unroll 1
-  for (int i = 0; i < J; ++i) {
-    Lanes qq = zero(), qv = zero(), vq = zero(), vv = zero();
 #pragma GCC unroll 6
-    for (int k = 0; k < velocity; ++k) qq += r.by_q[k] * (r.weight[k] * r.by_q[k][i]);
-#pragma GCC unroll 6
-    for (int k = velocity; k < r.count; ++k) {
-      const Lanes &by_q = r.by_q[k], &by_v = r.by_v[k - velocity];
-      const double of_q = r.weight[k] * by_q[i], of_v = r.weight[k] * by_v[i];
-      qq += by_q * of_q;
-      qv += by_v * of_q;
-      vq += by_q * of_v;
-      vv += by_v * of_v;
-    }
-    n.Lxx[i].block[0] += qq;
-    n.Lxx[i].block[1] += qv;
-    n.Lxx[L::velocity + i].block[0] += vq;
-    n.Lxx[L::velocity + i].block[1] += vv;
+  for (int k = 0; k < velocity; ++k) {
+    of_v[k] = rows_v[k] * r.weight[velocity + k];
+    n.Lx.block[1] += of_v[k] * r.value[velocity + k];
   }
-}
-
-template <class L>
-PLIANT_INLINE void state_cost(const Chain& chain, const Stage& s, const Row<L>& x, bool derivatives, NodeValues<L>& n) {
-  const Lanes dq = (x.block[0] - s.q_reference) * chain.is_joint, dv = (x.block[1] - s.v_reference) * chain.is_joint;
-  n.cost += 0.5 * sum(s.q_weight * dq * dq + s.v_weight * dv * dv);
-  if (!derivatives) return;
-  n.Lx.block[0] += s.q_weight * dq;
-  n.Lx.block[1] += s.v_weight * dv;
 #pragma GCC unroll 1
   for (int i = 0; i < L::J; ++i) {
-    n.Lxx[i].add(i, s.q_weight[i]);
-    n.Lxx[L::velocity + i].add(L::velocity + i, s.v_weight[i]);
+    Lanes qq = n.Lxx[i].block[0], qv = zero(), vq = zero(), vv = n.Lxx[L::velocity + i].block[1];
+#pragma GCC unroll 6
+    for (int k = 0; k < velocity; ++k) qq += r.by_q[k] * of_q[k][i];
+#pragma GCC unroll 6
+    for (int k = 0; k < velocity; ++k) {
+      const Lanes &by_q = r.by_q[velocity + k], &by_v = rows_v[k];
+      const double q = of_q[velocity + k][i], v = of_v[k][i];
+      qq += by_q * q;
+      qv += by_v * q;
+      vq += by_q * v;
+      vv += by_v * v;
+    }
+    n.Lxx[i].block[0] = qq;
+    n.Lxx[i].block[1] = qv;
+    n.Lxx[L::velocity + i].block[0] = vq;
+    n.Lxx[L::velocity + i].block[1] = vv;
   }
-}
-
-template <class L>
-PLIANT_INLINE void control_cost(const Stage& s, const Lanes& u, bool derivatives, NodeValues<L>& n) {
-  const Lanes du = u - s.u_reference;
-  n.cost += 0.5 * sum(s.u_weight * du * du);
-  if (!derivatives) return;
-  n.Lu += s.u_weight * du;
-#pragma GCC unroll 1
-  for (int i = 0; i < L::J; ++i) n.Luu[i].add(i, s.u_weight[i]);
 }
 
 }  // namespace pliant::mpc::PLIANT_ISA

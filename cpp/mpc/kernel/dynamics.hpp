@@ -7,14 +7,13 @@
 namespace pliant::mpc::PLIANT_ISA {
 
 // Inertia of every link about the world's origin.
-PLIANT_INLINE Inertia world_inertia(const Chain& chain, const Kinematics& kin) {
+PLIANT_INLINE void world_inertia(const Chain& chain, const Kinematics& kin, Inertia& Y) {
   const Vecs &x = kin.x_axis, &y = kin.y_axis, &z = kin.z_axis;
   const Vecs com = x * chain.com_x + y * chain.com_y + z * chain.com_z + kin.origin;
   const Sym& I = chain.inertia;
   const Vecs Ix = x * I.xx + y * I.xy + z * I.xz;  // columns of R I
   const Vecs Iy = x * I.xy + y * I.yy + z * I.yz;
   const Vecs Iz = x * I.xz + y * I.yz + z * I.zz;
-  Inertia Y;
   Y.mass = chain.mass;
   Y.moment = com * chain.mass;
   const Lanes mxx = Y.moment.x * com.x, myy = Y.moment.y * com.y, mzz = Y.moment.z * com.z;
@@ -24,7 +23,6 @@ PLIANT_INLINE Inertia world_inertia(const Chain& chain, const Kinematics& kin) {
   Y.rotational.yy = Ix.y * x.y + Iy.y * y.y + Iz.y * z.y + mxx + mzz;
   Y.rotational.yz = Ix.y * x.z + Iy.y * y.z + Iz.y * z.z - Y.moment.y * com.z;
   Y.rotational.zz = Ix.z * x.z + Iy.z * y.z + Iz.z * z.z + mxx + myy;
-  return Y;
 }
 
 struct Dynamics {
@@ -36,16 +34,15 @@ struct Dynamics {
   Vec up;                        // −gravity, the acceleration that stands for weight
 };
 
-PLIANT_INLINE Dynamics dynamics(const Chain& chain, const Kinematics& kin, const Velocities& vel, const Lanes& qd) {
-  Dynamics d;
-  d.link = world_inertia(chain, kin);
-  d.subtree = sum_outward(d.link);
+PLIANT_INLINE void dynamics(const Chain& chain, const Kinematics& kin, const Velocities& vel, const Lanes& qd,
+                            Dynamics& d) {
+  world_inertia(chain, kin, d.link);
+  sum_outward(d.link, d.subtree);
   d.momentum = d.link * vel.link;
   d.gyroscopic = cross_force(vel.link, d.momentum);
   d.subtree_inertia_axis = d.subtree * kin.S;
-  d.bias_acceleration = sum_inward(vel.axis_rate * qd);
+  sum_inward(vel.axis_rate * qd, d.bias_acceleration);
   d.up = -chain.gravity;
-  return d;
 }
 
 // Force each joint transmits for link accelerations `a` (gravity included) and a wrench on the last link.
@@ -62,57 +59,62 @@ struct MassMatrix {
 };
 
 template <int J>
-PLIANT_INLINE MassMatrix<J> mass_matrix(const Chain& chain, const Kinematics& kin, const Dynamics& d) {
-  MassMatrix<J> M;
+PLIANT_INLINE void mass_matrix(const Chain& chain, const Kinematics& kin, const Dynamics& d, MassMatrix<J>& M) {
 #pragma GCC unroll 1
-  for (int i = 0; i < J; ++i) {
-    M.row[i] = dot(d.subtree_inertia_axis, lane(kin.S, i));
-    M.row[i].add(i, chain.armature[i]);
-  }
-  return M;
+  for (int i = 0; i < J; ++i) M.row[i] = dot(d.subtree_inertia_axis, lane(kin.S, i)) + only(i, chain.armature);
 }
 
-// Inverse of a symmetric positive definite matrix whose rows are right in the lanes j ≥ i (Cholesky).
+// Inverse of a symmetric positive definite matrix whose rows are right in the lanes j ≥ i.
 template <int J>
 struct Inverse {
   Lanes row[J];
 };
 
+// L D Lᵀ, in scalars: no square root on the path from column to column, and one division each.
 template <int J>
-PLIANT_INLINE Inverse<J> inverse(const MassMatrix<J>& M) {
-  double lower[J][J], reciprocal[J];
+struct Factor {
+  double lower[J][J];    // L below its diagonal of ones
+  double reciprocal[J];  // D⁻¹
+};
+
+template <int J>
+PLIANT_INLINE void factorise(const Lanes* rows, Factor<J>& f) {
+  double scaled[J][J];  // L D
 #pragma GCC unroll 8
   for (int j = 0; j < J; ++j) {
-    double s = M.row[j][j];
+    double pivot = rows[j][j];
 #pragma GCC unroll 8
-    for (int k = 0; k < j; ++k) s -= lower[j][k] * lower[j][k];
-    reciprocal[j] = 1.0 / sqrt(s);
+    for (int k = 0; k < j; ++k) pivot -= scaled[j][k] * f.lower[j][k];
+    f.reciprocal[j] = 1 / pivot;
 #pragma GCC unroll 8
     for (int i = j + 1; i < J; ++i) {
-      double t = M.row[j][i];
+      scaled[i][j] = rows[j][i];
 #pragma GCC unroll 8
-      for (int k = 0; k < j; ++k) t -= lower[i][k] * lower[j][k];
-      lower[i][j] = t * reciprocal[j];
+      for (int k = 0; k < j; ++k) scaled[i][j] -= scaled[i][k] * f.lower[j][k];
+      f.lower[i][j] = scaled[i][j] * f.reciprocal[j];
     }
   }
-  Lanes half[J];  // rows of the inverse of the Cholesky factor
+}
+
+template <int J>
+PLIANT_INLINE void invert(const MassMatrix<J>& M, Inverse<J>& inverse) {
+  Factor<J> factor;
+  factorise<J>(M.row, factor);
+  Lanes half[J], scaled[J];  // rows of L⁻¹ and D^(−1/2) L⁻¹: the inverse comes out symmetric to the last bit
+#pragma GCC unroll 8
+  for (int i = 0; i < J; ++i) {
+    half[i] = only(i, splat(1));
+#pragma GCC unroll 8
+    for (int k = 0; k < i; ++k) half[i] -= half[k] * factor.lower[i][k];
+    scaled[i] = half[i] * sqrt(factor.reciprocal[i]);
+  }
 #pragma GCC unroll 8
   for (int i = 0; i < J; ++i) {
     Lanes r = zero();
-    r.set(i, 1);
 #pragma GCC unroll 8
-    for (int k = 0; k < i; ++k) r -= half[k] * lower[i][k];
-    half[i] = r * reciprocal[i];
+    for (int k = i; k < J; ++k) r += scaled[k] * scaled[k][i];
+    inverse.row[i] = r;
   }
-  Inverse<J> inv;
-#pragma GCC unroll 8
-  for (int i = 0; i < J; ++i) {
-    Lanes r = zero();
-#pragma GCC unroll 8
-    for (int k = i; k < J; ++k) r += half[k] * half[k][i];
-    inv.row[i] = r;
-  }
-  return inv;
 }
 
 template <int J>
@@ -126,7 +128,7 @@ PLIANT_INLINE Lanes multiply(const Lanes* rows, const Lanes& v) {  // symmetric 
 // Σ over the subtree of the matrix that turns a motion m into the force change it makes through the velocities.
 // Only the angular part of m matters: linear momentum gives force, D and the angular momentum give moment.
 struct VelocityCoupling {
-  Vecs linear, angular;  // subtree momentum
+  Spatial momentum;  // of the subtree
   Sym D;
 };
 
@@ -141,14 +143,17 @@ PLIANT_INLINE VelocityCoupling velocity_coupling(const Dynamics& d, const Veloci
   D.xy = w.y * I.yz - w.z * I.yy + w.z * I.xx - w.x * I.xz - c.x * v.y - c.y * v.x;
   D.xz = w.y * I.zz - w.z * I.yz + w.x * I.xy - w.y * I.xx - c.x * v.z - c.z * v.x;
   D.yz = w.z * I.xz - w.x * I.zz + w.x * I.yy - w.y * I.xy - c.y * v.z - c.z * v.y;
-  return {sum_outward(d.momentum.lin), sum_outward(d.momentum.ang), sum_outward(D)};
+  VelocityCoupling B;
+  sum_outward(d.momentum, B.momentum);
+  sum_outward(D, B.D);
+  return B;
 }
 PLIANT_INLINE Spatial operator*(const VelocityCoupling& B, const Spatial& m) {
-  return {cross(B.linear, m.ang) * -2.0, B.D * m.ang - cross(B.angular, m.ang)};
+  return {cross(B.momentum.lin, m.ang) * -2.0, B.D * m.ang - cross(B.momentum.ang, m.ang)};
 }
 // S_iᵀ times the coupling, as a vector against the angular part of a motion.
 PLIANT_INLINE Vecs transposed_times(const VelocityCoupling& B, const Spatial& S) {
-  return cross(B.linear, S.lin) * 2.0 + B.D * S.ang + cross(B.angular, S.ang);
+  return cross(B.momentum.lin, S.lin) * 2.0 + B.D * S.ang + cross(B.momentum.ang, S.ang);
 }
 
 // Rates of the joint axes under acceleration: what an acceleration changes by when a joint before it turns.
@@ -168,9 +173,9 @@ struct DynamicsDerivatives {
 };
 
 template <int J>
-PLIANT_INLINE DynamicsDerivatives<J> inverse_dynamics_derivatives(const Chain& chain, const Kinematics& kin,
-                                                                  const Velocities& vel, const Dynamics& d,
-                                                                  const Spatial& axis_acc, const Spatial& force) {
+PLIANT_INLINE void inverse_dynamics_derivatives(const Chain& chain, const Kinematics& kin, const Velocities& vel,
+                                                const Dynamics& d, const Spatial& axis_acc, const Spatial& force,
+                                                DynamicsDerivatives<J>& out) {
   const VelocityCoupling B = velocity_coupling(d, vel);
   const Spatial axis_rate2 = vel.axis_rate * 2.0;
   // Joint j after joint i: the force that joint j's change makes on its subtree, felt at i.
@@ -178,16 +183,13 @@ PLIANT_INLINE DynamicsDerivatives<J> inverse_dynamics_derivatives(const Chain& c
   const Spatial outer_v = B * kin.S + d.subtree * axis_rate2;
   // Joint j before joint i: the motion that joint j's change makes at i, against i's subtree.
   const Vecs inner = transposed_times(B, kin.S);
-  DynamicsDerivatives<J> out;
 #pragma GCC unroll 1
   for (int i = 0; i < J; ++i) {
     const SpatialVec S = lane(kin.S, i), F = lane(d.subtree_inertia_axis, i);
     const Vec b = lane(inner, i);
     out.q[i] = select_from(i, dot(outer_q, S), dot(axis_acc, F) + dot(vel.axis_rate.ang, b));
-    out.v[i] = select_from(i, dot(outer_v, S), dot(axis_rate2, F) + dot(kin.S.ang, b));
-    out.v[i].add(i, chain.joint_damping[i]);
+    out.v[i] = select_from(i, dot(outer_v, S), dot(axis_rate2, F) + dot(kin.S.ang, b)) + only(i, chain.joint_damping);
   }
-  return out;
 }
 
 // Torque that holds the robot at rest under a wrench on the last link: g(q) − Jᵀλ.

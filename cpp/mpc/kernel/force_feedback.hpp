@@ -30,6 +30,7 @@ PLIANT_INLINE void gravity_cost(const Pass<L::J>& p, const Contact& c, const Sta
   if (!derivatives) return;
   Lanes rows[J];
   load_torque_rows<J>(p, c, wrench, true, rows);
+  Lanes weighted[J];                          // rows times their weights
   Lanes weighted_force[L::M], cross_q[L::M];  // w J_c and its product with ∂r/∂q
 #pragma GCC unroll 6
   for (int f = 0; f < L::M; ++f) {
@@ -39,16 +40,20 @@ PLIANT_INLINE void gravity_cost(const Pass<L::J>& p, const Contact& c, const Sta
   n.Lu += slope;
 #pragma GCC unroll 1
   for (int i = 0; i < J; ++i) {
+    weighted[i] = rows[i] * s.torque_weight[i];
     n.Lx.block[0] += rows[i] * slope[i];
-    n.Luu[i].add(i, s.torque_weight[i]);
-    n.Lux[i].block[0] += rows[i] * s.torque_weight[i];
+    n.Luu[i] += only(i, s.torque_weight);
+    n.Lux[i].block[0] += weighted[i];
 #pragma GCC unroll 6
     for (int f = 0; f < L::M; ++f) cross_q[f] += rows[i] * weighted_force[f][i];
   }
 #pragma GCC unroll 1
-  for (int k = 0; k < J; ++k)
+  for (int k = 0; k < J; ++k) {
+    Lanes qq = n.Lxx[k].block[0];
 #pragma GCC unroll 8
-    for (int i = 0; i < J; ++i) n.Lxx[k].block[0] += rows[i] * (s.torque_weight[i] * rows[i][k]);
+    for (int i = 0; i < J; ++i) qq += rows[i] * weighted[i][k];
+    n.Lxx[k].block[0] = qq;
+  }
 #pragma GCC unroll 6
   for (int f = 0; f < L::M; ++f) {
     const int lane_f = L::force_lane(f);
@@ -67,12 +72,12 @@ PLIANT_INLINE void gravity_cost(const Pass<L::J>& p, const Contact& c, const Sta
 // Tangent of v̇ and λ̇ [FFMPC eq. 22–23], from 0 = ∂(ID − Jᵀ λ_mean) + M δv̇ − δτ.
 template <class L>
 PLIANT_INLINE void force_feedback_tangent(const Pass<L::J>& p, const Contact& c, const Stage& s,
-                                          const LoadedDerivatives<L::J>& ld, double active, bool exponential,
+                                          LoadedDerivatives<L::J>& ld, double active, bool exponential,
                                           NodeValues<L>& n) {
   constexpr int J = L::J, M = L::M;
   ContactDerivatives cd;
   contact_derivatives(p.kin, p.vel, p.dyn, c, ld.axis_acc, ld.last_acceleration, M, cd);
-  DynamicsDerivatives<J> id = ld.id;
+  DynamicsDerivatives<J>& id = ld.id;
   if (exponential) {
 #pragma GCC unroll 6
     for (int f = 0; f < M; ++f) {
@@ -147,13 +152,14 @@ template <class L>
   const Lanes q = x.block[0] * chain.is_joint, qd = x.block[1] * chain.is_joint;
   Pass<J> p;
   begin_pass<J>(chain, s, q, qd, p);
-  if (derivatives) clear_cost(n, chain);
-  n.cost = 0;
-  tool_cost(p.tool, derivatives, n);
-  state_cost(chain, s, x, derivatives, n);
+  n.cost = tool_cost(p.tool) + state_cost(chain, s, x);
+  if (derivatives) {
+    begin_expansion(chain, s, x, u, n);
+    expand_tool_cost(p.tool, n);
+  }
   force_cost(s, x, derivatives, n);
   if (s.terminal) return;
-  control_cost(s, u, derivatives, n);
+  n.cost += control_cost(s, u);
   finish_dynamics<J>(chain, qd, p);
 
   const double active = s.active ? 1 : 0;

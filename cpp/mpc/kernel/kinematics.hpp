@@ -13,9 +13,9 @@ struct Kinematics {
 };
 
 template <int J>
-PLIANT_INLINE Kinematics forward_kinematics(const Chain& chain, const Lanes& q) {
+PLIANT_INLINE void forward_kinematics(const Chain& chain, const Lanes& q, Kinematics& kin) {
   const SinCos angle = sine_cosine(q * chain.is_revolute);
-  alignas(64) double column[9][lane_count] = {}, position[3][lane_count] = {};
+  alignas(64) double entry[12][lane_count];
   Vec x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1}, p = {0, 0, 0};
 #pragma GCC unroll 8
   for (int i = 0; i < J; ++i) {
@@ -29,19 +29,18 @@ PLIANT_INLINE Kinematics forward_kinematics(const Chain& chain, const Lanes& q) 
     y = by * angle.cos[i] - bx * angle.sin[i];
     p = p + z * (chain.prismatic[i] * q[i]);
     const double entries[12] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z, p.x, p.y, p.z};
-#pragma GCC unroll 9
-    for (int r = 0; r < 9; ++r) column[r][i] = entries[r];
-#pragma GCC unroll 3
-    for (int r = 0; r < 3; ++r) position[r][i] = entries[9 + r];
+#pragma GCC unroll 12
+    for (int r = 0; r < 12; ++r) entry[r][i] = entries[r];
   }
-  Kinematics kin;
-  kin.x_axis = {load(column[0]), load(column[1]), load(column[2])};
-  kin.y_axis = {load(column[3]), load(column[4]), load(column[5])};
-  kin.z_axis = {load(column[6]), load(column[7]), load(column[8])};
-  kin.origin = {load(position[0]), load(position[1]), load(position[2])};
+#pragma GCC unroll 12
+  for (int r = 0; r < 12; ++r)
+    for (int i = J; i < lane_count; ++i) entry[r][i] = 0;
+  kin.x_axis = {load(entry[0]), load(entry[1]), load(entry[2])};
+  kin.y_axis = {load(entry[3]), load(entry[4]), load(entry[5])};
+  kin.z_axis = {load(entry[6]), load(entry[7]), load(entry[8])};
+  kin.origin = {load(entry[9]), load(entry[10]), load(entry[11])};
   const Vecs turning = kin.z_axis * chain.is_revolute;
   kin.S = {cross(kin.origin, turning) + kin.z_axis * chain.is_prismatic, turning};
-  return kin;
 }
 
 // A frame on the last link.
@@ -66,13 +65,11 @@ struct Velocities {
 };
 
 template <int J>
-PLIANT_INLINE Velocities velocities(const Kinematics& kin, const Lanes& qd) {
-  Velocities v;
-  v.link = sum_inward(kin.S * qd);
+PLIANT_INLINE void velocities(const Kinematics& kin, const Lanes& qd, Velocities& v) {
+  sum_inward(kin.S * qd, v.link);
   v.parent = parent(v.link);
   v.axis_rate = cross_motion(v.link, kin.S);
   v.last = lane(v.link, J - 1);
-  return v;
 }
 
 // A motion about the world's origin, seen at a point: linear part of the point, angular part.

@@ -26,15 +26,17 @@ struct alignas(64) Pass {
 
 template <int J>
 [[gnu::noinline]] void begin_pass(const Chain& chain, const Stage& s, const Lanes& q, const Lanes& qd, Pass<J>& p) {
-  p.kin = forward_kinematics<J>(chain, q);
-  p.vel = velocities<J>(p.kin, qd);
-  p.tool = tool_residuals<J>(chain, p.kin, p.vel, s);
+  forward_kinematics<J>(chain, q, p.kin);
+  velocities<J>(p.kin, qd, p.vel);
+  tool_residuals<J>(chain, p.kin, p.vel, s, p.tool);
 }
 
 template <int J>
 [[gnu::noinline]] void finish_dynamics(const Chain& chain, const Lanes& qd, Pass<J>& p) {
-  p.dyn = dynamics(chain, p.kin, p.vel, qd);
-  p.Minv = inverse<J>(mass_matrix<J>(chain, p.kin, p.dyn));
+  dynamics(chain, p.kin, p.vel, qd, p.dyn);
+  MassMatrix<J> M;
+  mass_matrix<J>(chain, p.kin, p.dyn, M);
+  invert<J>(M, p.Minv);
   const SpatialVec none = {{0, 0, 0}, {0, 0, 0}};
   const Spatial force = transmitted(p.dyn, with_gravity(p.dyn.bias_acceleration, p.dyn), none);
   p.bias = dot(p.kin.S, force) + chain.joint_damping * qd;
@@ -62,12 +64,14 @@ template <int J>
 [[gnu::noinline]] void loaded_derivatives(const Chain& chain, const Pass<J>& p, const Contact& c,
                                           const SpatialVec& wrench, const Lanes& acceleration, bool loaded,
                                           LoadedDerivatives<J>& out) {
-  const Spatial a = sum_inward(p.kin.S * acceleration) + p.dyn.bias_acceleration;
+  Spatial a;
+  sum_inward(p.kin.S * acceleration, a);
+  a = a + p.dyn.bias_acceleration;
   out.last_acceleration = lane(a, J - 1);
   const Spatial with_weight = with_gravity(a, p.dyn);
   out.axis_acc = axis_acceleration(p.kin, p.vel, p.dyn, with_weight);
-  out.id = inverse_dynamics_derivatives<J>(chain, p.kin, p.vel, p.dyn, out.axis_acc,
-                                           transmitted(p.dyn, with_weight, wrench));
+  inverse_dynamics_derivatives<J>(chain, p.kin, p.vel, p.dyn, out.axis_acc, transmitted(p.dyn, with_weight, wrench),
+                                  out.id);
   if (!loaded || c.axes.turning) return;
   const AxesCorrection k = axes_correction(p.kin, c, wrench);
 #pragma GCC unroll 1

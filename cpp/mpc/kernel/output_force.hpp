@@ -144,12 +144,13 @@ template <class L>
   OutputPass<J> o;
   Pass<J>& p = o.pass;
   begin_pass<J>(chain, s, q, qd, p);
-  if (derivatives) clear_cost(n, chain);
-  n.cost = 0;
-  tool_cost(p.tool, derivatives, n);
-  state_cost(chain, s, x, derivatives, n);
+  n.cost = tool_cost(p.tool) + state_cost(chain, s, x);
+  if (derivatives) {
+    begin_expansion(chain, s, x, u, n);
+    expand_tool_cost(p.tool, n);
+  }
   if (s.terminal) return;
-  control_cost(s, u, derivatives, n);
+  n.cost += control_cost(s, u);
   finish_dynamics<J>(chain, qd, p);
 
   Lanes torque = u;

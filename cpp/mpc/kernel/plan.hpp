@@ -72,7 +72,8 @@ template <class L>
 void tool_path(const Engine* engine, double* positions) {
   const Solver<L>& s = solver<L>(engine);
   for (int k = 0; k <= s.options.horizon; ++k, positions += 3) {
-    const Kinematics kin = forward_kinematics<L::J>(s.chain, s.current().x[k].block[0] * s.chain.is_joint);
+    Kinematics kin;
+    forward_kinematics<L::J>(s.chain, s.current().x[k].block[0] * s.chain.is_joint, kin);
     const Vec p = frame_on_last_link<L::J>(kin, s.chain.tool_rotation, s.chain.tool_translation).p;
     positions[0] = p.x;
     positions[1] = p.y;

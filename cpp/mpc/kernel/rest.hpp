@@ -21,7 +21,7 @@ template <int J>
   finish_dynamics<J>(chain, zero(), pass);
   const Kinematics& kin = pass.kin;
   const Dynamics& dyn = pass.dyn;
-  rest.M = mass_matrix<J>(chain, kin, dyn);
+  mass_matrix<J>(chain, kin, dyn, rest.M);
   rest.tool = frame_on_last_link<J>(kin, chain.tool_rotation, chain.tool_translation);
   rest.contact = frame_on_last_link<J>(kin, chain.contact_rotation, chain.contact_translation);
   rest.gravity_torque = gravity_torque(kin, dyn, SpatialVec{{0, 0, 0}, {0, 0, 0}});

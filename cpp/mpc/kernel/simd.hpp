@@ -169,6 +169,14 @@ PLIANT_INLINE Lanes select_from(int first, const Lanes& from, const Lanes& befor
   return r;
 }
 
+// Lane i of `a`, zero in the others: what adds to a diagonal without a detour through memory.
+PLIANT_INLINE Lanes only(int i, const Lanes& a) {
+  const Lanes number = load(lane_number);
+  Lanes r;
+  PLIANT_EACH_PART r.part[k] = number.part[k] == Native{} + double(i) ? a.part[k] : Native{};
+  return r;
+}
+
 PLIANT_INLINE double larger(double a, double b) { return a > b ? a : b; }
 PLIANT_INLINE int larger(int a, int b) { return a > b ? a : b; }
 PLIANT_INLINE double magnitude(double a) { return __builtin_fabs(a); }

@@ -71,18 +71,24 @@ PLIANT_INLINE Vecs operator*(const Mat& A, const Vecs& v) {
 
 // Running sums of every member of a struct made of Lanes; a loop, so that the code stays small.
 template <class T>
-PLIANT_INLINE T sum_outward(T a) {
-  Lanes* members = reinterpret_cast<Lanes*>(&a);
+PLIANT_INLINE void sum_outward(const T& a, T& sums) {
+  const Lanes* from = reinterpret_cast<const Lanes*>(&a);
+  Lanes* to = reinterpret_cast<Lanes*>(&sums);
 #pragma GCC unroll 1
-  for (unsigned i = 0; i < sizeof(T) / sizeof(Lanes); ++i) members[i] = sum_outward(members[i]);
-  return a;
+  for (unsigned i = 0; i < sizeof(T) / sizeof(Lanes); ++i) to[i] = sum_outward(from[i]);
 }
 template <class T>
-PLIANT_INLINE T sum_inward(T a) {
-  Lanes* members = reinterpret_cast<Lanes*>(&a);
+PLIANT_INLINE T sum_outward(const T& a) {
+  T sums;
+  sum_outward(a, sums);
+  return sums;
+}
+template <class T>
+PLIANT_INLINE void sum_inward(const T& a, T& sums) {
+  const Lanes* from = reinterpret_cast<const Lanes*>(&a);
+  Lanes* to = reinterpret_cast<Lanes*>(&sums);
 #pragma GCC unroll 1
-  for (unsigned i = 0; i < sizeof(T) / sizeof(Lanes); ++i) members[i] = sum_inward(members[i]);
-  return a;
+  for (unsigned i = 0; i < sizeof(T) / sizeof(Lanes); ++i) to[i] = sum_inward(from[i]);
 }
 
 // A motion (velocity, acceleration) or a force (force, moment about the origin) per lane.
