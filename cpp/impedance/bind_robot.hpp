@@ -83,6 +83,7 @@ inline void copy_array(nb::handle value, const char* name, std::initializer_list
         *to++ = *reinterpret_cast<const double*>(PyArray_BYTES(array) + i * row + j * step);
     return;
   }
+  if (!PyObject_CheckBuffer(value.ptr())) throw nb::type_error("must be an array");
   Numbers numbers;  // of another type, or a shape that it refuses
   const Rows rows = numbers.read(value, name, shape);
   const long columns = *(shape.end() - 1), count = shape.size() > 1 ? *shape.begin() : 1;

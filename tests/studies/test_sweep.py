@@ -175,7 +175,7 @@ def test_a_killed_command_loses_the_running_runs_only_and_a_second_one_is_told_w
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_an_interrupted_study_is_resumed_to_the_same_table(jobs: int, tmp_path: Path) -> None:
-    cases = ("toy", "--case", "slow", "--seeds", "24")
+    cases = ("toy", "--case", "slow", "--seeds", "36")
     folder = tmp_path / "cut"
     process = start(*cases, "--jobs", jobs, "--out", folder, start_new_session=True)
     _wait_for_rows(folder)
@@ -184,14 +184,14 @@ def test_an_interrupted_study_is_resumed_to_the_same_table(jobs: int, tmp_path: 
     assert "Traceback" not in errors
     assert f"--resume {folder}" in errors
     kept = rows(folder)
-    assert 0 < kept.num_rows < 24
+    assert 0 < kept.num_rows < 36
     assert (folder / "summary.json").exists()
     assert (folder / "report.md").exists()
     code, out, errors = study("--resume", folder)
     assert code == 0, errors
     assert "report" in out
     table = rows(folder)
-    assert table["seed"].to_pylist() == list(range(24))
+    assert table["seed"].to_pylist() == list(range(36))
     assert set(table["status"].to_pylist()) == {"finished"}
 
 

@@ -120,7 +120,7 @@ def test_parameters_of_another_controller_are_refused_with_the_valid_ones() -> N
         study.build(config)
 
 
-@pytest.mark.parametrize(("delay", "gain"), [(0.0, 45.0), (6e-3, 0.1 / 7e-3)])
+@pytest.mark.parametrize(("delay", "gain"), [(0.0, 45.0), (6e-3, 0.18 / 7e-3)])
 def test_a_late_loop_regulates_force_more_slowly(delay: float, gain: float) -> None:
     """At 45 /s and 7 ms the loop oscillates and loses contact."""
     entry, robot = find_controller("haptic"), Robot.load("leg3")

@@ -106,7 +106,7 @@ PLIANT_INLINE double tool_cost(const ToolResiduals& r) {
 template <class L>
 PLIANT_INLINE void expand_tool_cost(const ToolResiduals& r, NodeValues<L>& n) {
   constexpr int velocity = 6;
-  const Lanes* rows_v = &r.by_v.lin.x;  // the six of a Spatial lie one after the other
+  const Lanes* rows_v = &r.by_v.lin.x;               // the six of a Spatial lie one after the other
   Lanes of_q[ToolResiduals::count], of_v[velocity];  // the rows times their weights
 #pragma GCC unroll 12
   for (int k = 0; k < r.count; ++k) {
