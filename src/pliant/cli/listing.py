@@ -11,9 +11,7 @@ from pliant.cli.list_file import written
 from pliant.cli.plain_table import PlainTable
 from pliant.errors import ConfigError, options
 from pliant.robots import CATALOGUE, is_available
-
-GROUP = "pliant.controllers"
-"""entry points through which other packages offer controllers"""
+from pliant.wiring.entry_group import GROUP
 
 
 def list_command(console: Console, what: str | None, name: str | None = None) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pliant.errors import ConfigError
+from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
 from pliant.signals import Estimate, Reference
 
@@ -80,5 +81,4 @@ class LatestReference(ReferenceSource[None]):
 
 def at_time(reference: Reference, time: float) -> Reference:
     """The same reference at another time, s."""
-    r = reference  # written out: twice as fast as `changed`
-    return Reference(time, r.tasks, r.posture, r.phase, r.preview, r.tuning, r.diagnostics)
+    return changed(reference, time=time)

@@ -14,10 +14,10 @@ from pliant.controllers.registry import CONTROLLERS
 from pliant.entries import ControllerEntry, find_entry, merged_entries
 from pliant.errors import ConfigError
 from pliant.mpc.registry import CONTROLLERS as PREDICTIVE
+from pliant.wiring.entry_group import GROUP
 from pliant.wiring.plugins import entry_of, imported
 from pliant.wiring.recipes import RECIPES
 
-GROUP = "pliant.controllers"
 OWN = merged_entries(CONTROLLERS, PREDICTIVE, RECIPES)
 """name → entry of what is part of pliant"""
 

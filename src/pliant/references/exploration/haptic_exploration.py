@@ -11,6 +11,7 @@ import numpy as np
 
 from pliant.axis_modes import AxisModes
 from pliant.errors import ConfigError, SignalError, options
+from pliant.frozen import changed
 from pliant.interfaces import ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.frame import ExploredFrame, FrameRules, in_world
@@ -120,8 +121,7 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         diagnostics: dict[str, float | Array] = dict(plain.diagnostics)
         period = min(period, _LONGEST_PERIOD)
         tasks = tuple([self._felt(task, estimate, state, period, diagnostics) for task in plain.tasks])
-        explored = Reference(plain.time, tasks, plain.posture, plain.phase, plain.preview, plain.tuning, diagnostics)
-        return explored, state
+        return changed(plain, tasks=tasks, diagnostics=diagnostics), state
 
     def _felt(
         self,
@@ -230,14 +230,4 @@ def _shifted(
     clamped = in_world(explored.rotation, [axis.clamped for axis in explored.axes])
     if any(clamped):
         wrench = np.array([f - c for f, c in zip(desired, clamped, strict=True)])
-    return TaskReference(
-        task.frame,
-        position,
-        rotation,
-        task.velocity,
-        task.acceleration,
-        wrench,
-        tuning,
-        task.task_rotation,
-        task.modes,
-    )
+    return changed(task, position=position, rotation=rotation, wrench=wrench, tuning=tuning)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, SignalError
+from pliant.frozen import changed
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Coming, instants, preview_of
 from pliant.references.planners.superposition import MotionLimits, Superposition
@@ -120,8 +121,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         preview = goal.preview
         if self.lookahead is not None:
             preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
-        planned = Reference(goal.time, tasks, goal.posture, goal.phase, preview, goal.tuning, diagnostics)
-        return planned, state
+        return changed(goal, tasks=tasks, diagnostics=diagnostics, preview=preview), state
 
     def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
         """The references of the first task at later times, s, increasing, with the targets that are known now.
@@ -187,9 +187,7 @@ def _placed(task: TaskReference, frame: PlannedFrame, time: float) -> TaskRefere
         return frame.placed[1]
     (position, turned), velocity, acceleration = _now(frame, time)
     rotation = None if task.rotation is None else turned
-    placed = TaskReference(
-        task.frame, position, rotation, velocity, acceleration, task.wrench, task.tuning, task.task_rotation, task.modes
-    )
+    placed = changed(task, position=position, rotation=rotation, velocity=velocity, acceleration=acceleration)
     frame.placed = task, placed
     return placed
 
