@@ -3,7 +3,9 @@
     python benchmarks/tick.py --against OTHER_ENVIRONMENT/bin/python --write docs/performance.md
 
 Each run is a child process of one of the two Pythons, one after the other, so that what else the machine does meets
-both; a ratio is the median over rounds of the ratio within a round. Times are CPU time of the loop's thread.
+both; a ratio is the median over rounds of the ratio within a round. Times are CPU time of the loop's thread. A clock of
+CPU time is a call into the system, and fourteen of them a tick take up to a third of a tick: so the loop and the run
+as a whole are timed in a run of their own, without a look at their parts.
 """
 
 from __future__ import annotations
@@ -59,14 +61,20 @@ def core_of(controller: Any) -> tuple[Any, str]:
     return holder, "inner"
 
 
-def worker(study: str, case: str, controller: str, duration: str) -> dict[str, Any]:
-    """One run by the command line's own way, with its loop timed. Needs no other function of the package."""
-    from pliant import loop
-    from pliant.cli import run as command
-    from pliant.cli.app import main
+def whole_loop(plain: Callable[..., Any], found: dict[str, Any]) -> Callable[..., Any]:
+    """A loop's run that is timed as it is."""
 
-    found: dict[str, Any] = {}
-    plain: Callable[..., Any] = loop.run
+    def run(*inputs: Any) -> Any:
+        begin = time.thread_time()
+        outcome = plain(*inputs)
+        found["loop"], found["ticks"] = time.thread_time() - begin, outcome.ticks
+        return outcome
+
+    return run
+
+
+def parted_loop(plain: Callable[..., Any], found: dict[str, Any]) -> Callable[..., Any]:
+    """A loop's run whose parts are timed."""
 
     def run(plant: Any, estimator: Any, source: Any, control: Any, clock: Any, observers: Any = (), *more: Any) -> Any:
         core = None
@@ -82,13 +90,25 @@ def worker(study: str, case: str, controller: str, duration: str) -> dict[str, A
             recorder(tick)
             recorded.append(time.thread_time() - begin)
 
-        begin = time.thread_time()
         outcome = plain(*parts, clock, [watch, *observers[1:]], *more)
-        found["loop"] = (time.thread_time() - begin) / len(recorded)
         found["parts"] = dict(zip(PARTS, [*(part.taken for part in parts), recorded], strict=True))
         found["core"] = (core or parts[3]).taken
-        found["failure"] = outcome.failure
         return outcome
+
+    return run
+
+
+def worker(study: str, case: str, controller: str, duration: str, look: str) -> dict[str, Any]:
+    """One run by the command line's own way, with its loop timed. Needs no other function of the package.
+
+    Args:
+        look: "parts": times the parts of the loop; "whole": the loop and what is round it.
+    """
+    from pliant import loop
+    from pliant.cli import run as command
+    from pliant.cli.app import main
+
+    found: dict[str, Any] = {}
 
     def run_case(study: Any, *rest: Any, plain_case: Callable[..., Any] = command.run_case, **more: Any) -> Any:
         drawn: list[float] = []
@@ -106,7 +126,8 @@ def worker(study: str, case: str, controller: str, duration: str) -> dict[str, A
         found["measured"] = time.process_time() - begin - sum(drawn)
         return result
 
-    loop.run, command.run_case = run, run_case
+    loop.run = (parted_loop if look == "parts" else whole_loop)(loop.run, found)
+    command.run_case = run_case
     with tempfile.TemporaryDirectory() as folder:
         argv = ["run", study, "--case", case, "--controller", controller, "--out", folder]
         sys.argv = ["pliant", *argv, "--set", f"duration={duration}"]
@@ -115,28 +136,31 @@ def worker(study: str, case: str, controller: str, duration: str) -> dict[str, A
             main()
         found["run"] = time.process_time() - begin
         found["log"] = sum(path.stat().st_size for path in Path(folder).rglob("*.mcap"))
-    found["solves"] = controller.endswith("mpc")
     found["peak"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
-    return summarised(found, float(duration))
+    return parts_of(found, controller.endswith("mpc")) if look == "parts" else whole_of(found, float(duration))
 
 
-def summarised(found: dict[str, Any], duration: float) -> dict[str, float]:
-    """µs, s and MB of one run. A predictive controller's step that solves takes more than twice a short one's time."""
+def parts_of(found: dict[str, Any], solves: bool) -> dict[str, float]:
+    """µs of the parts of a tick. A predictive controller's step that solves takes more than twice a short one's
+    time."""
     core = sorted(found["core"])
     limit = 2.0 * core[len(core) // 20]
     quick, long = [taken for taken in core if taken <= limit], [taken for taken in core if taken > limit]
     steps = {"controller's own step": US * median(core), "the same, p99": US * percentile(core, 0.99)}
-    if found["solves"]:
+    if solves:
         steps = {
             "step without solve": US * median(quick),
             "step that solves": US * median(long),
             "step that solves, p99": US * percentile(long, 0.99),
         }
+    return {**steps, **{part: US * sum(taken) / len(taken) for part, taken in found["parts"].items()}}
+
+
+def whole_of(found: dict[str, Any], duration: float) -> dict[str, float]:
+    """µs, s and MB of a run."""
     return {
-        **steps,
-        **{part: US * sum(taken) / len(taken) for part, taken in found["parts"].items()},
-        "tick of the loop": US * found["loop"],
-        "loop: CPU s per simulated s": found["loop"] * len(found["parts"]["plant"]) / duration,
+        "tick of the loop": US * found["loop"] / found["ticks"],
+        "loop: CPU s per simulated s": found["loop"] / duration,
         "loop with log and metrics, CPU s": found["measured"],
         "whole run, CPU s": found["run"],
         "log, MB": found["log"] / 1e6,
@@ -150,13 +174,15 @@ def percentile(values: Sequence[float], share: float) -> float:
 
 def measured(python: str, case: Sequence[str]) -> dict[str, float]:
     environment = os.environ | {"OMP_NUM_THREADS": "1", "MPLBACKEND": "agg"}
-    call = [python, __file__, "worker", *case]
-    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=False)
-    try:
-        row: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
-    except (IndexError, ValueError):
-        raise SystemExit(f"{' '.join(call)} gave no numbers:\n{done.stderr[-2000:]}") from None
-    return row
+    rows: dict[str, float] = {}
+    for look in ("parts", "whole"):
+        call = [python, __file__, "worker", *case, look]
+        done = subprocess.run(call, env=environment, capture_output=True, text=True, check=False)
+        try:
+            rows |= json.loads(done.stdout.splitlines()[-1])
+        except (IndexError, ValueError):
+            raise SystemExit(f"{' '.join(call)} gave no numbers:\n{done.stderr[-2000:]}") from None
+    return rows
 
 
 def compared(rounds: int, against: str | None, names: Sequence[str]) -> dict[str, dict[str, tuple[float, ...]]]:
@@ -200,7 +226,7 @@ def machine() -> str:
 
 def main() -> None:
     if sys.argv[1:2] == ["worker"]:
-        print(json.dumps(worker(*sys.argv[2:6])))
+        print(json.dumps(worker(*sys.argv[2:7])))
         return
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--against", help="Python of an environment with another version")
