@@ -14,9 +14,11 @@ from pliant.interfaces import Lookahead
 from pliant.mpc.defaults import ClassicalMpc
 from pliant.mpc.modelled_force import ModelledForceMpc
 from pliant.mpc.registry import CONTROLLERS
-from pliant.signals import Estimate
+from pliant.signals import Estimate, Reference, TaskReference
 from pliant.studies.polishing import STUDY
 from pliant.studies.polishing.paper_task import FRAME
+
+from .problems import polishing_arm
 
 NAIVE = "visco-elastic-mpc"
 
@@ -75,3 +77,18 @@ def test_another_model_is_refused() -> None:
 
     with pytest.raises(ConfigError, match=r"dimension = 1, got 'classical'"):
         ModelledForceMpc(Robot.load("iiwa14", tool=Tool()), ClassicalMpc())
+
+
+def test_contact_that_is_felt_says_where_the_surface_is() -> None:
+    """The reference is 3 mm below the tool when its phase with contact begins. Felt, the surface is at the tool and
+    presses with nothing; else it is at the reference, and its 1e4 N/m pull with 30 N."""
+    robot = polishing_arm()
+    config = merged(CONTROLLERS[NAIVE].default, {"frame": "tool"})
+    controller = ModelledForceMpc(robot, config)
+    position, R = robot.placement(robot.home, "tool")
+    below = TaskReference("tool", position - 3e-3 * np.eye(3)[2], R)
+    for felt, pull in ((True, 0.0), (False, 30.0)):
+        zero = np.zeros(robot.n)
+        estimate = Estimate(0.0, robot.home, zero, zero, zero, contacts={controller._frame: felt})
+        command, _ = controller.step(estimate, Reference(0.0, (below,), phase="press"), controller.init(estimate))
+        assert float(command.diagnostics["mpc/modelled_force"]) == pytest.approx(pull, abs=1e-6)
