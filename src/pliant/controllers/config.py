@@ -110,7 +110,8 @@ class StackConfig(ControllerConfig):
     motion_damping: float = quantity(
         0.0,
         "1/s",
-        "of what a frame's velocity differs from its reference's by, with the inertia that the frame has",
+        "of what a frame's velocity differs from its reference's by, with the inertia that the frame has, and of"
+        " self-motion",
         shown=(0.0, 200.0),
         ge=0.0,
     )

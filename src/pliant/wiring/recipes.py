@@ -71,8 +71,9 @@ def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticCo
     the surface (3e3 N/m where nothing is believed) in series: force follows the target late there, so that within the
     window of K̂ each contact seems soft. What differs from the reference's motion is damped with 0.4 / (period and
     delays), in every direction: the tool on its contact and the arm on its soft rotation are springs that nothing else
-    damps, and a late stiffness drives them. A prompt loop damps with 30 /s, unless the task says its own impedance or
-    the algorithm is the printed one.
+    damps, and a late stiffness drives them; and self-motion of an arm with joints to spare, which the model's error of
+    gravity drives. A prompt loop damps with 30 /s, unless the task says its own impedance or the algorithm is the
+    printed one.
     """
     exploration, impedance = config.exploration, suggest_stack(robot, config.impedance, believed)
     if exploration is not None:
