@@ -16,7 +16,7 @@ int fill(const Row& row, nb::handle tick, const Packed<double, 2>& rows, size_t 
 
 NB_MODULE(_telemetry, m) {
   nb::class_<Row>(m, "Row")
-      .def(nb::init<>())
+      .def(nb::init<nb::object>(), "flat"_a)
       .def("mapping", &Row::mapping, "path"_a, "keys"_a)
       .def("items", &Row::items, "path"_a, "count"_a)
       .def("none", &Row::none, "path"_a)

@@ -17,6 +17,7 @@ struct Place {
   nb::object name;            // by which the place above has it: an attribute or a key
   nb::object said;            // the text that must stand here
   std::vector<Place> inside;  // attributes, or every key or item in order
+  mutable nb::object layout;  // of a mapping whose numbers lie in one array, once it was read
   int offset = 0, size = 1;   // of the numbers in the row
 };
 
@@ -25,6 +26,9 @@ using Path = nb::tuple;
 
 class Row {
  public:
+  // Args: the class of mappings whose numbers lie in one array (src/pliant/flat_channels.py).
+  explicit Row(nb::object flat) : flat_(std::move(flat)) {}
+
   // A mapping of these keys in this order; what stands at them is added later.
   void mapping(Path path, nb::tuple keys) {
     Place& place = at(path);
@@ -63,6 +67,7 @@ class Row {
 
   Place top_;
   int width_ = 0;
+  nb::object flat_, layout_ = nb::str("layout"), numbers_ = nb::str("numbers");
 
   Place& at(Path path) {
     Place* place = &top_;
@@ -136,8 +141,37 @@ class Row {
     }
     return fits;
   }
-  // Somebody's own mapping.
+  // Another mapping. One whose numbers lie in one array is read number by number the first time, and copied as it lies
+  // where it has the same layout then.
   int visit_mapping(const Place& place, nb::handle value, double* row) const {
+    if (!value.type().is(flat_) || !lies_in_order(place)) return visit_keys(place, value, row);
+    const nb::object layout = value.attr(layout_), numbers = value.attr(numbers_);
+    const PyArrayObject* array = doubles_of(numbers);
+    if (array && place.layout.is(layout) && PyArray_NDIM(array) == 1 && PyArray_IS_C_CONTIGUOUS(array) &&
+        PyArray_DIMS(array)[0] == size_of(place)) {
+      std::memcpy(row + place.inside.front().offset, PyArray_DATA(array), size_t(size_of(place)) * sizeof(double));
+      return fits;
+    }
+    const int failed = visit_keys(place, value, row);
+    if (failed == fits) place.layout = layout;
+    return failed;
+  }
+  // Whether a mapping holds nothing but numbers, one after the other in the row.
+  static bool lies_in_order(const Place& place) {
+    if (place.inside.empty()) return false;
+    int offset = place.inside.front().offset;
+    for (const Place& entry : place.inside) {
+      if (entry.kind != Place::Kind::array && entry.kind != Place::Kind::number) return false;
+      if (entry.offset != offset) return false;
+      offset += entry.size;
+    }
+    return true;
+  }
+  static int size_of(const Place& place) {
+    const Place& last = place.inside.back();
+    return last.offset + last.size - place.inside.front().offset;
+  }
+  int visit_keys(const Place& place, nb::handle value, double* row) const {
     const nb::object keys = nb::steal(PySequence_Tuple(value.ptr()));
     if (!keys.is_valid() || PyTuple_GET_SIZE(keys.ptr()) != Py_ssize_t(place.inside.size())) return width_;
     for (size_t i = 0; i < place.inside.size(); ++i) {

@@ -38,6 +38,7 @@ class StepLimit:
         q: Array,
         diagnostics: Mapping[str, Any],
         channel: str,
+        channels: Array | None,
         memory: Array,
         out: Array,
     ) -> float | None:
@@ -48,8 +49,10 @@ class StepLimit:
             q: (n,) rad.
             diagnostics: of the controller, read where a part of the torque is held back.
             channel: of the diagnostics, J that may be spent; where it is missing nothing gives way.
+            channels: (k,) the numbers of the diagnostics, where they lie in one array.
             memory: state.
-            out: (2 n,) torque and clamped torque, N·m.
+            out: (2 n,) torque and clamped torque, N·m; with `channels` (2 n + k + 2,): these, J that was withheld, and
+                by how much the bound is exceeded.
 
         Returns:
             By how much the bound is exceeded, as a share of it; None: the torque is as it was asked for.

@@ -10,8 +10,8 @@ from pliant.spatial import Array
 class Row:
     """Which numbers of a tick stand where in a row, and what a tick must be like to have that row."""
 
-    def __init__(self) -> None:
-        """A row without numbers, of any tick."""
+    def __init__(self, flat: type) -> None:
+        """A row without numbers, of any tick. Args: flat: the class of mappings whose numbers lie in one array."""
 
     def mapping(self, path: tuple[Any, ...], keys: tuple[str, ...]) -> None:
         """A mapping that has these keys in this order. Before what stands at its keys."""

@@ -7,10 +7,11 @@ import pytest
 
 from pliant import _impedance
 from pliant.controllers.attractor import Law
-from pliant.controllers.energy_ledger import Diagnostics, channel_table
+from pliant.controllers.energy_ledger import channel_table, layout_of
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import ForceProfile, Shape
+from pliant.flat_channels import FlatChannels
 from pliant.signals import ImpedanceTuning
 from pliant.spatial import Array, exp3, log3
 from tests.twins.impedance_twin import TwinTask, works
@@ -110,7 +111,7 @@ def test_core_equals_its_twin(law: Law, seed: int, limit: float) -> None:
         code = stack.step(memory, out, q, J, sum(poses, ()), sum(targets, ()), None, retune or None)
         assert code == 0
         assert np.isfinite(out).all()
-        channels = Diagnostics(table, out.copy())
+        channels = FlatChannels(layout_of(table), out[2 * JOINTS :].copy())
         work = works(torques, kept_back, way)
         for i, (label, twin) in enumerate(zip("ab", twins, strict=True)):
             profile = profiles[i]
@@ -213,7 +214,7 @@ def driven_in_axes(axes: list[Array | None], turned: Array, steps: int = 250) ->
         q[:3], q[3:6], last = q[:3] + turned.T @ moved[:3], q[3:6] + turned.T @ moved[3:], pose
         code = stack.step(memory, out, q, J, pose, target, None, retune if step == 0 else None, (axes[step],))
         assert code == 0
-        for name, value in Diagnostics(table, out.copy()).items():
+        for name, value in FlatChannels(layout_of(table), out[2 * JOINTS :].copy()).items():
             found.setdefault(name, []).append(np.array(value))
     return {name: np.array(values) for name, values in found.items()}
 

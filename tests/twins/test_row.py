@@ -11,6 +11,7 @@ import pytest
 
 from pliant.environment import Environment, EstimatedSurface
 from pliant.errors import ShapeError
+from pliant.flat_channels import FlatChannels, FlatLayout
 from pliant.signals import ImpedanceTuning, Tick
 from pliant.spatial import Array
 from pliant.telemetry import Recorder
@@ -202,3 +203,43 @@ def test_an_interrupt_in_somebodys_mapping_passes_through() -> None:
             np.zeros((1, layout_of(tick).row.width)),
             0,
         )
+
+
+LAYOUT = FlatLayout({"a": 0, "b": slice(1, 4), "c": 4})
+
+
+def flat(layout: FlatLayout, begin: float) -> Tick:
+    """A tick whose command's channels count up from a number."""
+    numbers = np.arange(begin, begin + layout.size)
+    tick = make_tick(0)
+    return replace(tick, command=replace(tick.command, diagnostics=FlatChannels(layout, numbers)))
+
+
+def test_channels_in_one_array_are_those_read_one_by_one() -> None:
+    layout = layout_of(flat(LAYOUT, 0.0))
+    same_names = FlatLayout(LAYOUT.places)
+    for tick in (flat(LAYOUT, 3.0), flat(LAYOUT, 7.0), flat(same_names, 9.0), flat(LAYOUT, -2.0)):
+        row = filled(layout, tick)
+        assert row is not None
+        assert row.tobytes() == twin(tick).tobytes()
+
+
+def test_other_channels_in_one_array_are_another_row() -> None:
+    layout = layout_of(flat(LAYOUT, 0.0))
+    assert filled(layout, flat(LAYOUT, 0.0)) is not None  # baseline; from here on the layout is known
+    for places in ({"a": 0, "c": slice(1, 4), "b": 4}, {"a": 0, "b": slice(1, 3), "c": 3}, {"a": 0, "b": slice(1, 5)}):
+        assert filled(layout, flat(FlatLayout(places), 0.0)) is None
+    gaps = FlatLayout({"a": 0, "b": slice(2, 5), "c": 7})
+    row = filled(layout, flat(gaps, 1.0))
+    assert row is not None
+    assert row.tobytes() == twin(flat(gaps, 1.0)).tobytes()
+    assert filled(layout, flat(gaps, 2.0)) is not None
+    short = flat(LAYOUT, 0.0)
+    short = replace(short, command=replace(short.command, diagnostics=FlatChannels(LAYOUT, np.zeros(4))))
+    assert filled(layout, short) is None
+
+
+def test_a_layout_is_in_the_order_of_its_numbers() -> None:
+    assert LAYOUT.followed_by(("d", "e")).places == {**LAYOUT.places, "d": 5, "e": 6}
+    with pytest.raises(ShapeError, match="'a' begins at 0"):
+        FlatLayout({"b": slice(1, 4), "a": 0})

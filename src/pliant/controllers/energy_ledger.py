@@ -16,11 +16,11 @@ dissipates is its storage margin: a passive law keeps it at or above zero, excep
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from pliant.errors import ShapeError
-from pliant.spatial import Array
+from pliant.flat_channels import FlatLayout
 
 TOTALS = ("stored", "supplied", "delivered", "dissipated", "tuning", "clamped", "spendable")
 """channels `energy/…` of the whole stack, J"""
@@ -49,11 +49,6 @@ class LedgerChannel:
     size: int
     """0 for a scalar"""
     unit: str
-    place: int | slice = field(init=False, repr=False)
-    """index that picks it out of the output"""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "place", slice(self.start, self.start + self.size) if self.size else self.start)
 
 
 def channel_table(joints: int, tasks: Sequence[tuple[str, int]], account: bool = True) -> dict[str, LedgerChannel]:
@@ -95,21 +90,8 @@ def require_length(table: Mapping[str, LedgerChannel], numbers: int) -> None:
         )
 
 
-class Diagnostics(Mapping[str, "float | Array"]):
-    """Channels of one tick, read from one array on access; to create it costs no more than a pointer."""
-
-    __slots__ = ("_table", "_values")
-
-    def __init__(self, table: Mapping[str, LedgerChannel], values: Array) -> None:
-        self._table = table
-        self._values = values
-
-    def __getitem__(self, name: str) -> float | Array:
-        place = self._table[name].place
-        return self._values.item(place) if isinstance(place, int) else self._values[place]  # a log reads all of them
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._table)
-
-    def __len__(self) -> int:
-        return len(self._table)
+def layout_of(table: Mapping[str, LedgerChannel]) -> FlatLayout:
+    """The channels in the array that begins with the first of them."""
+    begin = min(channel.start for channel in table.values())
+    starts = {name: (channel.start - begin, channel.size) for name, channel in table.items()}
+    return FlatLayout({name: slice(at, at + size) if size else at for name, (at, size) in starts.items()})

@@ -13,13 +13,14 @@ from pliant import _impedance
 from pliant.axis_modes import AxisModes
 from pliant.controllers.attractor import Law
 from pliant.controllers.damping import Damping
-from pliant.controllers.energy_ledger import Diagnostics, LedgerChannel, channel_table, require_length
+from pliant.controllers.energy_ledger import LedgerChannel, channel_table, layout_of, require_length
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import linear_range
 from pliant.controllers.stack_input import check_stack, free_axes, joints_that_move, loosened, target_of
 from pliant.controllers.task import FrameTask
 from pliant.errors import ShapeError, SignalError
+from pliant.flat_channels import FlatChannels
 from pliant.interfaces import Controller, Needs
 from pliant.rigid_body import tree_of
 from pliant.robot import Robot
@@ -113,6 +114,7 @@ class Stack(Controller[StackState]):
         self._table = channel_table(robot.n, labels_and_axes, account=self.law is Law.CAPPED)
         self._size = self._core.output_size
         require_length(self._table, self._size)
+        self._layout = layout_of(self._table)
 
     def _compiled(self) -> _impedance.Stack:
         return _impedance.Stack(
@@ -177,7 +179,8 @@ class Stack(Controller[StackState]):
         if code:
             raise SignalError(self._not_finite(code, estimate))
         n = self._n
-        return Command(estimate.time, out[:n], out[n : 2 * n], Diagnostics(self._table, out)), StackState(memory, tuned)
+        channels = FlatChannels(self._layout, out[2 * n :])
+        return Command(estimate.time, out[:n], out[n : 2 * n], channels), StackState(memory, tuned)
 
     def _targets(self, reference: Reference) -> tuple[TaskReference, ...]:
         return tuple([target_of(reference, i, task.frame) for i, task in enumerate(self.tasks)])

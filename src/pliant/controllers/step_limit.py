@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from pliant import _guard
 from pliant.errors import ConfigError
+from pliant.flat_channels import FlatChannels, FlatLayout
 from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
 from pliant.quantity import quantity
 from pliant.robot import Robot
@@ -88,6 +89,7 @@ class StepLimit(Controller[StepLimitState]):
         self._limit: Array = robot.torque_limit
         self._n = len(self.step_max)
         self._core = _guard.StepLimit(self.step_max.tolist())
+        self._layouts = (FlatLayout({}), FlatLayout({}))
 
     @property
     def needs(self) -> Needs:
@@ -110,37 +112,23 @@ class StepLimit(Controller[StepLimitState]):
 
     def step(self, estimate: Estimate, reference: Reference, state: StepLimitState) -> tuple[Command, StepLimitState]:
         command, inner = self.inner.step(estimate, reference, state.inner)
-        n, memory, out = self._n, state.memory.copy(), np.empty(2 * self._n)
-        channels = command.diagnostics
-        exceeded = self._core.step(command.torque, command.clamped, estimate.q, channels, SPENDABLE, memory, out)
+        n, memory, given = self._n, state.memory.copy(), command.diagnostics
+        numbers = given.numbers if isinstance(given, FlatChannels) else None
+        out = np.empty(2 * n if numbers is None else 2 * n + len(numbers) + len(CHANNELS))
+        asked, clamped, q = command.torque, command.clamped, estimate.q
+        exceeded = self._core.step(asked, clamped, q, given, SPENDABLE, numbers, memory, out)
         if exceeded is not None:
             inner = self.inner.kept_back(inner, memory[2 * n : 3 * n].copy())
-        channels = _with(channels, float(memory[-1]), exceeded or 0.0)
-        bounded = Command(command.time, out[:n], out[n:], channels)
-        return bounded, StepLimitState(inner, memory)
+        if isinstance(given, FlatChannels):
+            channels = FlatChannels(self._followed(given.layout), out[2 * n :])
+        else:
+            channels = {**given, **dict(zip(CHANNELS, (float(memory[-1]), exceeded or 0.0), strict=True))}
+        return Command(command.time, out[:n], out[n : 2 * n], channels), StepLimitState(inner, memory)
 
-
-def _with(inner: Mapping[str, Any], energy: float, exceeded: float) -> Mapping[str, Any]:
-    """A controller's channels and two more: a dict is copied, which is faster to read; what reads its channels from
-    elsewhere stays as it is."""
-    added = {"energy/step_limit": energy, "step_limit/exceeded": exceeded}
-    return {**inner, **added} if type(inner) is dict else _With(inner, added)
-
-
-class _With(Mapping[str, "float | Array"]):
-    """The inner controller's channels and two more, without copying them."""
-
-    __slots__ = ("_added", "_inner")
-
-    def __init__(self, inner: Mapping[str, float | Array], added: Mapping[str, float]) -> None:
-        self._inner, self._added = inner, added
-
-    def __getitem__(self, name: str) -> float | Array:
-        return self._added[name] if name in self._added else self._inner[name]
-
-    def __iter__(self) -> Iterator[str]:
-        yield from self._inner
-        yield from self._added
-
-    def __len__(self) -> int:
-        return len(self._inner) + len(self._added)
+    def _followed(self, layout: FlatLayout) -> FlatLayout:
+        """The inner controller's layout with the channels of the bound."""
+        known, followed = self._layouts
+        if known is not layout:
+            followed = layout.followed_by(tuple(CHANNELS))
+            self._layouts = layout, followed
+        return followed

@@ -10,6 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from pliant._telemetry import Row
+from pliant.flat_channels import FlatChannels
 from pliant.signals import Tick
 from pliant.spatial import Array
 from pliant.telemetry.channels import Channel, Path, PlacedChannel
@@ -55,7 +56,7 @@ class RowLayout:
 
 
 def _row(tick: Tick, found: Sequence[PlacedChannel]) -> Row:
-    row = Row()
+    row = Row(FlatChannels)
     for signal, names in _MAPPINGS.items():
         for name in names if getattr(tick, signal) is not None else ():
             keys: Mapping[str, Any] = attrgetter(f"{signal}.{name}")(tick)
