@@ -60,8 +60,8 @@ inline void bind_step_limit(nb::module_& m) {
   nb::class_<StepLimit>(m, "StepLimit")
       .def(nb::init<std::vector<double>>(), "step_max"_a)
       .def_prop_ro("memory_size", &StepLimit::memory_size)
-      .def("step", &step_limit, "torque"_a, "clamped"_a, "q"_a, "diagnostics"_a, "channel"_a,
-           "channels"_a.none(), "memory"_a.noconvert(), "out"_a.noconvert());
+      .def("step", &step_limit, "torque"_a, "clamped"_a, "q"_a, "diagnostics"_a, "channel"_a, "channels"_a.none(),
+           "memory"_a.noconvert(), "out"_a.noconvert());
 }
 
 }  // namespace pliant::guard

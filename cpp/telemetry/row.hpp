@@ -144,32 +144,28 @@ class Row {
   // Another mapping. One whose numbers lie in one array is read number by number the first time, and copied as it lies
   // where it has the same layout then.
   int visit_mapping(const Place& place, nb::handle value, double* row) const {
-    if (!value.type().is(flat_) || !lies_in_order(place)) return visit_keys(place, value, row);
-    const nb::object layout = value.attr(layout_), numbers = value.attr(numbers_);
-    const PyArrayObject* array = doubles_of(numbers);
-    if (array && place.layout.is(layout) && PyArray_NDIM(array) == 1 && PyArray_IS_C_CONTIGUOUS(array) &&
-        PyArray_DIMS(array)[0] == size_of(place)) {
-      std::memcpy(row + place.inside.front().offset, PyArray_DATA(array), size_t(size_of(place)) * sizeof(double));
-      return fits;
+    if (!value.type().is(flat_)) return visit_keys(place, value, row);
+    const nb::object layout = value.attr(layout_);
+    if (place.layout.is(layout)) {
+      const nb::object numbers = value.attr(numbers_);
+      if (copy_flat(place, doubles_of(numbers), row)) return fits;
     }
     const int failed = visit_keys(place, value, row);
     if (failed == fits) place.layout = layout;
     return failed;
   }
-  // Whether a mapping holds nothing but numbers, one after the other in the row.
-  static bool lies_in_order(const Place& place) {
-    if (place.inside.empty()) return false;
-    int offset = place.inside.front().offset;
+  // False: there are not as many numbers as the mapping's values have.
+  static bool copy_flat(const Place& place, const PyArrayObject* array, double* row) {
+    if (!array || PyArray_NDIM(array) != 1 || !PyArray_IS_C_CONTIGUOUS(array)) return false;
+    npy_intp size = 0;
+    for (const Place& entry : place.inside) size += entry.size;
+    if (PyArray_DIMS(array)[0] != size) return false;
+    const auto* from = static_cast<const double*>(PyArray_DATA(array));
     for (const Place& entry : place.inside) {
-      if (entry.kind != Place::Kind::array && entry.kind != Place::Kind::number) return false;
-      if (entry.offset != offset) return false;
-      offset += entry.size;
+      std::memcpy(row + entry.offset, from, size_t(entry.size) * sizeof(double));
+      from += entry.size;
     }
     return true;
-  }
-  static int size_of(const Place& place) {
-    const Place& last = place.inside.back();
-    return last.offset + last.size - place.inside.front().offset;
   }
   int visit_keys(const Place& place, nb::handle value, double* row) const {
     const nb::object keys = nb::steal(PySequence_Tuple(value.ptr()));

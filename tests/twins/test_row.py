@@ -205,7 +205,7 @@ def test_an_interrupt_in_somebodys_mapping_passes_through() -> None:
         )
 
 
-LAYOUT = FlatLayout({"a": 0, "b": slice(1, 4), "c": 4})
+LAYOUT = FlatLayout({"b": 0, "a": slice(1, 4), "c": 4})  # in a log, channels stand in another order
 
 
 def flat(layout: FlatLayout, begin: float) -> Tick:
@@ -227,9 +227,9 @@ def test_channels_in_one_array_are_those_read_one_by_one() -> None:
 def test_other_channels_in_one_array_are_another_row() -> None:
     layout = layout_of(flat(LAYOUT, 0.0))
     assert filled(layout, flat(LAYOUT, 0.0)) is not None  # baseline; from here on the layout is known
-    for places in ({"a": 0, "c": slice(1, 4), "b": 4}, {"a": 0, "b": slice(1, 3), "c": 3}, {"a": 0, "b": slice(1, 5)}):
+    for places in ({"b": 0, "c": slice(1, 4), "a": 4}, {"b": 0, "a": slice(1, 3), "c": 3}, {"b": 0, "a": slice(1, 5)}):
         assert filled(layout, flat(FlatLayout(places), 0.0)) is None
-    gaps = FlatLayout({"a": 0, "b": slice(2, 5), "c": 7})
+    gaps = FlatLayout({"b": 0, "a": slice(2, 5), "c": 7})
     row = filled(layout, flat(gaps, 1.0))
     assert row is not None
     assert row.tobytes() == twin(flat(gaps, 1.0)).tobytes()
