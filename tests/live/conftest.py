@@ -38,13 +38,20 @@ _FLAGS = [
 _FEW_PIXELS = 0.35  # a unit of length of the page: the processor draws here
 _CHEAP_PICTURES = """
 const soon = window.requestAnimationFrame.bind(window);
-window.requestAnimationFrame = (draw) => setTimeout(() => soon(draw), 150);
+let picture = 0;
+window.requestAnimationFrame = (draw) => setTimeout(() => { picture += 1; soon(draw); }, 150);
 window.cancelAnimationFrame = (handle) => clearTimeout(handle);
 const open = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, asked) {
   return open.call(this, kind, kind.startsWith("webgl") ? {...asked, antialias: false} : asked);
 };
-"""  # six pictures a second and no smooth edges, for the same reason: the scene is drawn anew all the time
+for (const name of ["drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"]) {
+  const drawn = WebGL2RenderingContext.prototype[name];
+  WebGL2RenderingContext.prototype[name] = function (...what) {
+    if (picture % 20 === 0) drawn.apply(this, what);
+  };
+}
+"""  # the scene is laid out six times a second, without smooth edges, and one in twenty is drawn: the processor draws
 PATIENCE = 100.0  # s: other work may share the machine
 
 
@@ -56,9 +63,16 @@ def until(holds: Callable[[], object], what: str, seconds: float = PATIENCE) -> 
         time.sleep(0.02)
 
 
-def pixels() -> float:
-    """Pixels a length unit of the page: all of them where pictures are asked for."""
-    return 1.0 if os.environ.get("PLIANT_SCREENSHOTS") else _FEW_PIXELS
+def new_tab(browser: Browser, width: int, height: int) -> Tab:
+    """A tab of this size; all of its pixels and pictures are drawn where pictures are asked for."""
+    asked = bool(os.environ.get("PLIANT_SCREENSHOTS"))
+    tab = browser.new_page(
+        viewport={"width": width, "height": height}, device_scale_factor=1.0 if asked else _FEW_PIXELS
+    )
+    if not asked:
+        tab.add_init_script(_CHEAP_PICTURES)
+    tab.set_default_timeout(1e3 * PATIENCE)
+    return tab
 
 
 @pytest.fixture(scope="session")
@@ -129,19 +143,27 @@ class Live:
 
 
 def drag(live: Live, label: str, share: float) -> None:
-    """Drags the thumb of a slider with the mouse. Args: label: how it begins; share: of the track, from the left."""
+    """Drags the thumb of a slider with the mouse, again if the page has not followed.
+
+    Args: label: how it begins; share: of the track, from the left.
+    """
     text = live.tab.locator("label", has_text=label).first
     slider = text.locator("xpath=following::*[@role='slider'][1]")
     slider.wait_for()
-    here = slider.bounding_box()
-    track = slider.locator("xpath=..").bounding_box()
-    assert here is not None
-    assert track is not None
-    mouse, y = live.tab.mouse, here["y"] + here["height"] / 2
-    mouse.move(here["x"] + here["width"] / 2, y)
-    mouse.down()
-    mouse.move(track["x"] + share * track["width"], y, steps=3)
-    mouse.up()
+    before, mouse = slider.get_attribute("aria-valuenow"), live.tab.mouse
+    for _ in range(5):
+        here = slider.bounding_box()
+        track = slider.locator("xpath=..").bounding_box()
+        assert here is not None
+        assert track is not None
+        y = here["y"] + here["height"] / 2
+        mouse.move(here["x"] + here["width"] / 2, y)
+        mouse.down()
+        mouse.move(track["x"] + share * track["width"], y, steps=3)
+        mouse.up()
+        if slider.get_attribute("aria-valuenow") != before:
+            return
+    raise AssertionError(f"the slider {label} stays at {before}")
 
 
 @pytest.fixture(scope="module")
@@ -166,10 +188,7 @@ def served(browser: Browser, folder: Path, study: str, case: CaseConfig) -> Iter
         page.run.start(study, case)
         thread = threading.Thread(target=page.serve, daemon=True)
         thread.start()
-        tab = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=pixels())
-        if not os.environ.get("PLIANT_SCREENSHOTS"):
-            tab.add_init_script(_CHEAP_PICTURES)
-        tab.set_default_timeout(1e3 * PATIENCE)
+        tab = new_tab(browser, 1280, 800)
         made = Live(server, page, tab, folder)
         tab.on("pageerror", lambda error: made.complaints.append(str(error)))
         tab.on("console", lambda note: made.complaints.append(note.text) if note.type == "error" else None)

@@ -12,7 +12,7 @@ from pliant.live.page.logged_scene import LoggedScene
 from pliant.live.page.replay import ReplayPage
 from pliant.live.server.web import PageServer
 from pliant.telemetry.log import Log
-from tests.live.conftest import PATIENCE, Live, drag, pixels, until
+from tests.live.conftest import PATIENCE, Live, drag, new_tab, until
 
 pytestmark = pytest.mark.study
 
@@ -159,10 +159,7 @@ def test_a_second_browser_watches_takes_over_and_vanishes(live: Live) -> None:
     Events, not the mouse: it waits for a picture that stands still, while one processor draws two pages.
     """
     before = set(live.folder.glob("*.mcap"))
-    other = live.tab.context.browser.new_page(  # type: ignore[union-attr]
-        viewport={"width": 820, "height": 600}, device_scale_factor=pixels()
-    )
-    other.set_default_timeout(1e3 * PATIENCE)
+    other = new_tab(live.tab.context.browser, 820, 600)  # type: ignore[arg-type]
     other.goto(live.server.url)
     until(lambda: live.page.steering.watchers() == 1, "somebody who watches")
     other.get_by_role("button", name="Pause").dispatch_event("click")
