@@ -1,13 +1,16 @@
-"""A frozen value with some fields changed."""
+"""Frozen values: made quickly, and with some fields changed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+import inspect
+import pickle
+from dataclasses import FrozenInstanceError, dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from pliant.frozen import changed
+from pliant.frozen import changed, quick
 from pliant.signals import Estimate
 
 
@@ -16,8 +19,8 @@ def test_it_says_what_the_standard_library_says() -> None:
     before = Estimate(1.0, zero, zero, zero, zero, {"tool": np.ones(6)})
     changes = {"q": np.ones(2), "disturbance": 2.0 * np.ones(2)}
     ours, theirs = changed(before, **changes), replace(before, **changes)
-    for field in fields(Estimate):
-        assert getattr(ours, field.name) is getattr(theirs, field.name)
+    for one in fields(Estimate):
+        assert getattr(ours, one.name) is getattr(theirs, one.name)
     assert before.q is zero
 
 
@@ -31,3 +34,68 @@ def test_what_cannot_be_changed_is_refused() -> None:
         changed(Estimate(1.0, zero, zero, zero, zero), torques=zero)
     with pytest.raises(AttributeError):
         changed(Open(), x=1)
+
+
+class Body:
+    a: float
+    b: float = 2.0
+    c: list[float] = field(default_factory=list[float])
+    d: tuple[float, ...] = field(default_factory=tuple[float, ...])
+    e: str = "e"
+
+    def total(self) -> float:
+        return self.a + self.b + sum(self.c) + sum(self.d)
+
+
+def body_of(name: str) -> dict[str, Any]:
+    return {**{k: v for k, v in vars(Body).items() if k not in ("__dict__", "__weakref__")}, "__qualname__": name}
+
+
+Quick = quick(type("Quick", (), body_of("Quick")))
+Plain = dataclass(frozen=True, slots=True)(type("Quick", (), body_of("Quick")))
+CALLS: list[tuple[tuple[Any, ...], dict[str, Any]]] = [
+    ((1.0,), {}),
+    ((1.0, 3.0, [1.0], (2.0,), "x"), {}),
+    ((1.0,), {"e": "y", "d": (5.0,)}),
+    ((), {"c": [4.0], "a": 2.0}),
+]
+
+
+@pytest.mark.parametrize(("values", "named"), CALLS)
+def test_a_quick_value_is_that_of_the_standard_library(values: tuple[Any, ...], named: dict[str, Any]) -> None:
+    ours, theirs = Quick(*values, **named), Plain(*values, **named)
+    assert repr(ours) == repr(theirs)
+    assert ours.total() == theirs.total()
+    assert ours == pickle.loads(pickle.dumps(ours)) == replace(ours)
+    assert ours != replace(ours, a=7.0)
+    with pytest.raises(FrozenInstanceError):
+        ours.a = 5.0
+    assert not hasattr(ours, "__dict__")
+
+
+def test_quick_values_share_no_default_that_can_change() -> None:
+    assert Quick(1.0).c is not Quick(1.0).c
+    assert inspect.signature(Quick) == inspect.signature(Plain)
+
+
+@pytest.mark.parametrize(("values", "named"), [((), {}), ((1.0,), {"f": 2.0}), ((1.0,), {"a": 2.0}), ((1.0,) * 6, {})])
+def test_calls_that_do_not_fit_say_so_as_there(values: tuple[Any, ...], named: dict[str, Any]) -> None:
+    with pytest.raises(TypeError) as ours:
+        Quick(*values, **named)
+    with pytest.raises(TypeError) as theirs:
+        Plain(*values, **named)
+    assert str(ours.value) == str(theirs.value)
+
+
+def test_what_a_class_checks_when_it_is_made_is_checked() -> None:
+    @quick
+    class Checked:
+        x: float
+
+        def __post_init__(self) -> None:
+            if self.x < 0.0:
+                raise ValueError("below zero")
+
+    assert Checked(1.0).x == 1.0
+    with pytest.raises(ValueError, match="below zero"):
+        Checked(-1.0)

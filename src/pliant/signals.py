@@ -20,6 +20,7 @@ import numpy.typing as npt
 from pliant.axis_modes import AxisModes
 from pliant.environment import Environment, EstimatedSurface
 from pliant.errors import ConfigError
+from pliant.frozen import quick
 from pliant.spatial import Array, as_vector
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
@@ -29,7 +30,7 @@ def _nothing() -> Mapping[str, Any]:
     return _NOTHING
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class Measurement:
     """Readings of the sensors at one instant, with their imperfections."""
 
@@ -48,7 +49,7 @@ class Measurement:
     everything beyond the sensor, also weight and inertia of the tool."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class Estimate:
     """What the robot believes: the measurement filtered, compensated and completed."""
 
@@ -98,10 +99,8 @@ class ImpedanceTuning:
         size = np.atleast_1d(np.asarray(self.range)).shape[0]
         for name in ("stiffness", "force_max", "range", "linear_range"):
             value = getattr(self, name)
-            if value is None:
-                continue
-            vector = as_vector(value, size, name)
-            if np.any(vector < 0.0):
+            vector = None if value is None else as_vector(value, size, name)
+            if vector is not None and np.any(vector < 0.0):
                 raise ConfigError(f"{name} must not be negative, got {vector.tolist()}")
             object.__setattr__(self, name, vector)
         off = (self.stiffness == 0.0) & (self.force_max == 0.0)
@@ -135,7 +134,7 @@ class ImpedanceTuning:
         return int(self.range.shape[0])
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class TaskReference:
     """Where one frame should be, how it should move, and how hard it should press."""
 
@@ -158,7 +157,7 @@ class TaskReference:
     """of each axis; None: force along what the wrench presses, motion elsewhere"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class Preview:
     """The reference at the nodes of a prediction horizon, N + 1 instants from now on."""
 
@@ -180,7 +179,7 @@ class Preview:
     """(N+1, 3, 3) R_world_task at each node; None: the world's axes"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class Reference:
     """What the robot should do now."""
 
@@ -199,7 +198,7 @@ class Reference:
     """channel → value, for the log: states and outputs of planners and exploration"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class Command:
     """What the controller asks of the actuators."""
 
@@ -213,7 +212,7 @@ class Command:
     """channel → value, for the log"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class Truth:
     """True state of a simulated world. Only metrics and figures use it; no controller does."""
 
@@ -234,7 +233,7 @@ class Truth:
     """(n,) by how much each joint stands beyond its position limit, rad (m where it slides); 0 within; None: unknown"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class Tick:
     """One cycle of the loop, for observers."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from pliant.controllers.stack_input import check_stack, free_axes, joints_that_m
 from pliant.controllers.task import FrameTask
 from pliant.errors import ShapeError, SignalError
 from pliant.flat_channels import FlatChannels
+from pliant.frozen import quick
 from pliant.interfaces import Controller, Needs
 from pliant.rigid_body import tree_of
 from pliant.robot import Robot
@@ -28,7 +29,7 @@ from pliant.signals import Command, Estimate, ImpedanceTuning, Reference, TaskRe
 from pliant.spatial import Array
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class StackState:
     """State between two ticks: phases, turning points, filters and ledger in one array, and the active tunings."""
 
@@ -36,7 +37,7 @@ class StackState:
     tuned: _Tuned
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class _Tuned:
     """Active tunings, and what of the references they follow from: while that is the same, so are they."""
 

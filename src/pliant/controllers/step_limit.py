@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from pliant import _guard
 from pliant.errors import ConfigError
 from pliant.flat_channels import FlatChannels, FlatLayout
+from pliant.frozen import quick
 from pliant.interfaces import ChannelUnit, Controller, HasUnit, Needs
 from pliant.quantity import quantity
 from pliant.robot import Robot
@@ -37,7 +37,7 @@ CHANNELS: Mapping[str, HasUnit] = {"energy/step_limit": ChannelUnit("J"), "step_
 """name → unit of what is added to the inner controller's channels"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class StepLimitState:
     """State of the inner controller, and the energy of the bound."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,14 +9,15 @@ import numpy as np
 from pliant._estimation import Chain, Stage
 from pliant.environment import Environment
 from pliant.errors import PliantError, SignalError
-from pliant.frozen import changed
+from pliant.frozen import changed, quick
 from pliant.interfaces import Estimator
+from pliant.named_rows import NamedRows
 from pliant.robot import Robot
 from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
 
 
-@dataclass(frozen=True, slots=True)
+@quick
 class ChainState:
     """What a chain remembers."""
 
@@ -145,14 +145,12 @@ class _Bound:
     def __init__(self, core: Chain, n: int) -> None:
         self.core, self.n, self.size = core, n, core.belief_size
         self._frames = tuple(core.frames)
-        start, count = 4 * n, len(self._frames)
-        self._wrenches = slice(start, start + 6 * count)
-        self._touches = slice(start + 6 * core.rows, start + 6 * core.rows + count)
+        self._wrenches = NamedRows(self._frames, 4 * n, 6)
+        self._touches = slice(4 * n + 6 * core.rows, 4 * n + 6 * core.rows + len(self._frames))
 
     def wrenches(self, out: Array) -> dict[str, Array]:
         """Frame → wrench (6,)."""
-        frames = self._frames
-        return dict(zip(frames, out[self._wrenches].reshape(-1, 6), strict=True)) if frames else {}
+        return self._wrenches.of(out)
 
     def contacts(self, out: Array) -> dict[str, bool]:
         """Frame → whether it touches."""

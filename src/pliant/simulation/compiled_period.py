@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from pliant._plant import Physics
+from pliant.named_rows import NamedRows
 from pliant.simulation.disturbances import Push
 from pliant.simulation.mujoco_library import FUNCTIONS, addresses
 from pliant.simulation.what_touches import WhatTouches
@@ -74,7 +75,8 @@ class CompiledPeriod:
         self.n = len(limit)
         self.size = self.core.outcome_size
         """numbers of a period's outcome"""
-        self._felt = 3 * self.n + 6 * len(self.contacts)
+        self._wrenches = NamedRows(self.contacts, 3 * self.n, 6)
+        self._readings = NamedRows(self.sensors, self._wrenches.end, 6)
         self._touching: dict[int, frozenset[str]] = {}
 
     def step(self, world: World, torque: Array) -> tuple[Array, int]:
@@ -87,7 +89,7 @@ class CompiledPeriod:
         """Writes a period's outcome (`size`,) and the contacts into the world."""
         n = self.n
         world.torque = out[2 * n : 3 * n]
-        world.wrenches = dict(zip(self.contacts, out[3 * n : self._felt].reshape(-1, 6), strict=True))
+        world.wrenches = self._wrenches.of(out)
         touching = self._touching.get(mask)
         if touching is None:
             touching = frozenset(frame for bit, frame in enumerate(self.contacts) if mask >> bit & 1)
@@ -96,7 +98,7 @@ class CompiledPeriod:
 
     def readings(self, out: Array) -> dict[str, Array]:
         """Frame of each sensor → what it reads (6,), out of a period's outcome."""
-        return dict(zip(self.sensors, out[self._felt :].reshape(-1, 6), strict=True))
+        return self._readings.of(out)
 
     def rows(self, pushes: Iterable[Push]) -> list[PushRow]:
         """Pushes in the format of the compiled code."""

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from pliant._plant import TruthRow
+from pliant.named_rows import NamedRows
 from pliant.signals import Truth
 from pliant.simulation.mujoco_library import can_look_inside
 from pliant.simulation.world import World
@@ -34,10 +35,11 @@ class TruthReader:
         bodies: Mapping[str, int],
     ) -> None:
         self._lower, self._upper = lower, upper
-        self._sites, self._bodies = tuple(sites), tuple(bodies)
         self._site_ids, self._body_ids = (np.array([*ids.values()], np.intp) for ids in (sites, bodies))
-        n, k = len(lower), len(sites)
-        self._n, self._parts = n, (4 * n + 3 * k, 4 * n + 12 * k)
+        n = self._n = len(lower)
+        self._positions = NamedRows(tuple(sites), 4 * n, 3)
+        self._rotations = NamedRows(tuple(sites), self._positions.end, 9)
+        self._poses = NamedRows(tuple(bodies), self._rotations.end, 7)
         self.row = self.in_python
         """data → numbers of its truth: q, v, torque, excess; positions, rotations, poses"""
         if can_look_inside():
@@ -46,16 +48,16 @@ class TruthReader:
 
     def truth(self, world: World, time: float) -> Truth:
         """The truth of a world at a time in s."""
-        n, (positions, rotations), row = self._n, self._parts, self.row(world.data)
+        n, row = self._n, self.row(world.data)
         return Truth(
             time,
             row[:n],
             row[n : 2 * n],
             row[2 * n : 3 * n],
-            dict(zip(self._sites, row[4 * n : positions].reshape(-1, 3), strict=True)),
-            dict(zip(self._sites, row[positions:rotations].reshape(-1, 3, 3), strict=True)),
+            self._positions.of(row),
+            self._rotations.matrices(row),
             dict(world.wrenches),
-            dict(zip(self._bodies, row[rotations:].reshape(-1, 7), strict=True)) if self._bodies else {},
+            self._poses.of(row),
             row[3 * n : 4 * n],
         )
 

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from pliant.errors import ConfigError
 from pliant.interfaces import Compensation, Plant
+from pliant.named_rows import NamedRows
 from pliant.sampling import whole_periods
 from pliant.signals import Command, Measurement, Truth
 from pliant.simulation.compiled_period import compiled_period_of
@@ -130,6 +131,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
     def _build(self, n: int, sensors: tuple[str, ...]) -> None:
         """What depends on the number of joints and sensors, which the plant tells by its first measurement."""
         self._sizes = Sizes(n, sensors, self._ticks, self._inner_steps, self.inner.period)
+        self._felt = NamedRows(sensors, 4 * n, 6)
         self._chain = chain_of(self.config, self._sizes)
         self._period = compiled_period_of(self.inner)
 
@@ -163,8 +165,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         return np.concatenate([true.q, true.v, true.torque, *felt])
 
     def _reading(self, time: float, out: Array) -> Measurement:
-        n, sensors = self._sizes.n, self._sizes.sensors
-        wrenches = dict(zip(sensors, out[4 * n : 4 * n + 6 * len(sensors)].reshape(-1, 6), strict=True))
+        n, wrenches = self._sizes.n, self._felt.of(out)
         return Measurement(time, out[:n], out[n : 2 * n], out[2 * n : 3 * n], out[3 * n : 4 * n], wrenches)
 
 
