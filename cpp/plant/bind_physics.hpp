@@ -91,10 +91,10 @@ class PyPhysics {
  public:
   PyPhysics(nb::object model, const std::vector<uintptr_t>& functions, int substeps, bool coriolis, Doubles limit,
             Doubles fastest, std::vector<int> frame_of_geom, std::vector<int> frame_site,
-            const std::vector<SensorRow>& sensors, const std::vector<PushRow>& pushes)
+            std::vector<int> frame_of_slot, const std::vector<SensorRow>& sensors, const std::vector<PushRow>& pushes)
       : model_(std::move(model)),
         physics_(world_of(pointed<const mjModel>(model_), substeps, coriolis, std::move(limit), std::move(fastest),
-                          std::move(frame_of_geom), std::move(frame_site), sensors),
+                          std::move(frame_of_geom), std::move(frame_site), std::move(frame_of_slot), sensors),
                  library_of(functions), pointed<const mjModel>(model_)),
         pushes_(pushes_of(pushes)) {}
 
@@ -111,6 +111,23 @@ class PyPhysics {
     return physics_.step(d, asked, pushes, outcome, touching) ? static_cast<int64_t>(touching) : -1;
   }
 
+  // The same for a period whose steps are made elsewhere, before and after them.
+  void hold(nb::handle data, const ConstVector& torque, const std::vector<PushRow>& more, const Vector& out) const {
+    expect(torque.size(), physics_.world().n, "torque");
+    expect(out.size(), physics_.outcome_size(), "out");
+    physics_.hold(pointed<mjData>(data), torque.data(), all_pushes(more), physics_.outcome(out.data()));
+  }
+  int64_t read(nb::handle data, const ConstVector& force, const ConstVector& point, const Vector& out) const {
+    const int numbers = 3 * int(physics_.world().frame_of_slot.size());
+    expect(force.size(), numbers, "force");
+    expect(point.size(), numbers, "point");
+    expect(out.size(), physics_.outcome_size(), "out");
+    std::uint64_t touching = 0;
+    const Outcome outcome = physics_.outcome(out.data());
+    const bool allowed = physics_.read(pointed<mjData>(data), {force.data(), point.data()}, outcome, touching);
+    return allowed ? static_cast<int64_t>(touching) : -1;
+  }
+
   std::vector<Push> all_pushes(const std::vector<PushRow>& more) const {
     std::vector<Push> pushes = pushes_;
     for (const Push& push : pushes_of(more)) pushes.push_back(push);
@@ -120,7 +137,7 @@ class PyPhysics {
 
  private:
   static World world_of(const mjModel* model, int substeps, bool coriolis, Doubles limit, Doubles fastest,
-                        std::vector<int> frame_of_geom, std::vector<int> frame_site,
+                        std::vector<int> frame_of_geom, std::vector<int> frame_site, std::vector<int> frame_of_slot,
                         const std::vector<SensorRow>& sensors) {
     World world;
     world.n = int(limit.size());
@@ -133,6 +150,10 @@ class PyPhysics {
     world.fastest = std::move(fastest);
     world.frame_of_geom = std::move(frame_of_geom);
     world.frame_site = std::move(frame_site);
+    for (const int frame : frame_of_slot)
+      if (frame >= int(world.frame_site.size()))
+        throw std::invalid_argument("frame_of_slot names a frame that is none");
+    world.frame_of_slot = std::move(frame_of_slot);
     for (const auto& [site, mass, center, inertia, felt] : sensors) {
       expect(center.size(), 3, "center");
       expect(inertia.size(), 9, "inertia");

@@ -11,11 +11,13 @@ NB_MODULE(_plant, m) {
   bind_truth(m);
   nb::class_<PyPhysics>(m, "Physics")
       .def(nb::init<nb::object, const std::vector<uintptr_t>&, int, bool, Doubles, Doubles, std::vector<int>,
-                    std::vector<int>, const std::vector<SensorRow>&, const std::vector<PushRow>&>(),
+                    std::vector<int>, std::vector<int>, const std::vector<SensorRow>&, const std::vector<PushRow>&>(),
            "model"_a, "functions"_a, "substeps"_a, "coriolis"_a, "limit"_a, "fastest"_a, "frame_of_geom"_a,
-           "frame_site"_a, "sensors"_a, "pushes"_a)
+           "frame_site"_a, "frame_of_slot"_a, "sensors"_a, "pushes"_a)
       .def_prop_ro("outcome_size", [](const PyPhysics& p) { return p.physics().outcome_size(); })
-      .def("step", &PyPhysics::step, "data"_a, "torque"_a, "pushes"_a, "out"_a.noconvert());
+      .def("step", &PyPhysics::step, "data"_a, "torque"_a, "pushes"_a, "out"_a.noconvert())
+      .def("hold", &PyPhysics::hold, "data"_a, "torque"_a, "pushes"_a, "out"_a.noconvert())
+      .def("read", &PyPhysics::read, "data"_a, "force"_a, "point"_a, "out"_a.noconvert());
   nb::class_<PyImperfectRobot>(m, "ImperfectRobot")
       .def("__init__", &init_imperfect_robot, nb::kw_only(), "n"_a, "frames"_a, "ticks"_a, "inner"_a, "under_way"_a,
            "limit"_a, "dry"_a, "viscous"_a, "noise"_a, "friction_velocity"_a, "kept"_a, "loop"_a, "ripple"_a, "late"_a,

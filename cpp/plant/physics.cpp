@@ -42,19 +42,51 @@ Outcome Physics::outcome(double* row) const {
 
 bool Physics::step(mjData* data, const double* torque, const std::vector<Push>& pushes, Outcome out,
                    std::uint64_t& touching) const {
-  const int n = world_.n;
-  for (int i = 0; i < n; ++i) {
-    const double limit = world_.limit[size_t(i)];
-    out.torque[i] = torque[i] < -limit ? -limit : torque[i] > limit ? limit : torque[i];
-  }
+  limit(torque, out.torque);
   for (int left = world_.substeps; left > 0; --left) {
     apply(data, out.torque, pushes);
     library_.step2(model_, data);
     if (left == 1) read_contacts(data, out.contacts, touching);
     library_.step1(model_, data);
   }
+  return read_robot(data, out);
+}
+
+void Physics::hold(mjData* data, const double* torque, const std::vector<Push>& pushes, Outcome out) const {
+  limit(torque, out.torque);
+  apply(data, out.torque, pushes);
+}
+
+bool Physics::read(mjData* data, Contacts contacts, Outcome out, std::uint64_t& touching) const {
+  std::fill(out.contacts, out.contacts + 6 * world_.frame_site.size(), 0.0);
+  touching = 0;
+  for (size_t slot = 0; slot < world_.frame_of_slot.size(); ++slot) {
+    const double *force = contacts.force + 3 * slot, *point = contacts.point + 3 * slot;
+    const int frame = world_.frame_of_slot[slot];
+    if (frame < 0 || (force[0] == 0 && force[1] == 0 && force[2] == 0)) continue;
+    const double* origin = data->site_xpos + 3 * world_.frame_site[size_t(frame)];
+    double *wrench = out.contacts + 6 * frame, lever[3];
+    for (int i = 0; i < 3; ++i) {
+      lever[i] = point[i] - origin[i];
+      wrench[i] += force[i];
+    }
+    add_cross(lever, force, wrench + 3);
+    touching |= std::uint64_t{1} << frame;
+  }
+  return read_robot(data, out);
+}
+
+void Physics::limit(const double* torque, double* limited) const {
+  for (int i = 0; i < world_.n; ++i) {
+    const double limit = world_.limit[size_t(i)];
+    limited[i] = torque[i] < -limit ? -limit : torque[i] > limit ? limit : torque[i];
+  }
+}
+
+// Joints and sensors. False: a joint's speed is not finite or not allowed.
+bool Physics::read_robot(mjData* data, Outcome out) const {
   bool allowed = true;
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < world_.n; ++i) {
     out.q[i] = data->qpos[i];
     out.v[i] = data->qvel[i];
     allowed = allowed && std::abs(out.v[i]) <= world_.fastest[size_t(i)];

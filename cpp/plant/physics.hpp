@@ -41,7 +41,13 @@ struct World {
   std::vector<double> fastest;     // (n) [rad/s], beyond which a period ends as failed
   std::vector<int> frame_of_geom;  // contact frame of each geom, -1: none
   std::vector<int> frame_site;     // site of each contact frame
+  std::vector<int> frame_of_slot;  // contact frame of each explicit contact, -1: none
   std::vector<Sensor> sensors;
+};
+
+// Explicit contacts, (slots, 3) each: force on the robot [N] and where it acts [m], world axes.
+struct Contacts {
+  const double *force, *point;
 };
 
 // Where results go: (n) q, v, torque; (frames, 6); (sensors, 6).
@@ -60,8 +66,13 @@ class Physics {
   // Whether every joint's speed is finite and allowed at the end. `touching`: bit per contact frame.
   bool step(mjData* data, const double* torque, const std::vector<Push>& pushes, Outcome out,
             std::uint64_t& touching) const;
+  // The two ends of a period whose steps are made elsewhere: a torque is held from now on; what came of it.
+  void hold(mjData* data, const double* torque, const std::vector<Push>& pushes, Outcome out) const;
+  bool read(mjData* data, Contacts contacts, Outcome out, std::uint64_t& touching) const;
 
  private:
+  void limit(const double* torque, double* limited) const;
+  bool read_robot(mjData* data, Outcome out) const;
   void apply(mjData* data, const double* torque, const std::vector<Push>& pushes) const;
   void read_contacts(mjData* data, double* contacts, std::uint64_t& touching) const;
   void read_sensor(mjData* data, const Sensor& sensor, const double* contacts, double* reading) const;

@@ -27,11 +27,13 @@ class Physics:
         fastest: Sequence[float],
         frame_of_geom: Sequence[int],
         frame_site: Sequence[int],
+        frame_of_slot: Sequence[int],
         sensors: Sequence[tuple[int, float, Sequence[float], Sequence[float], Sequence[int]]],
         pushes: Sequence[tuple[int, Sequence[float], float, float]],
     ) -> None:
         """functions: addresses in the loaded library (`mujoco_library.FUNCTIONS`); limit (n,) N·m; fastest (n,) rad/s;
-        frame_of_geom (ngeom,) contact frame of each geom or -1; frame_site: site of each contact frame; sensors: site,
+        frame_of_geom (ngeom,) contact frame of each geom or -1; frame_site: site of each contact frame;
+        frame_of_slot: contact frame of each explicit contact or -1; sensors: site,
         kg carried, centre (3,) m, inertia (9,) kg m², contact frames beyond; pushes: site, force (3,) N, from, to s."""
 
     @property
@@ -43,6 +45,16 @@ class Physics:
     ) -> int:
         """Holds a torque (n,) within the limits for a period; writes `out`. Returns a bit for each contact frame that
         touches, or -1 where a joint's speed is not finite or not allowed."""
+
+    def hold(
+        self, data: Any, torque: Array, pushes: Sequence[tuple[int, Sequence[float], float, float]], out: Array
+    ) -> None:
+        """Holds a torque (n,) within the limits, and the pushes of this instant, over steps that are made elsewhere;
+        writes the torque into `out`."""
+
+    def read(self, data: Any, force: Array, point: Array, out: Array) -> int:
+        """What came of them; writes the rest of `out`. Args: force (slots, 3) N and point (slots, 3) m of the explicit
+        contacts. Returns what `step` returns."""
 
 class TruthRow:
     """What is true of a world of one MuJoCo model, as a row of numbers.

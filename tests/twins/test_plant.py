@@ -36,13 +36,13 @@ def off(a: Measurement, b: Measurement) -> float:
     return max(float((np.abs(x - y) / np.maximum(1.0, np.abs(y))).max()) for x, y in pairs)
 
 
-def arm(python: bool = False, **options: Any) -> MujocoPlant:
+def arm(python: bool = False, contact: Any = "mujoco", **options: Any) -> MujocoPlant:
     """A leg over a table that it presses, with a sensor that carries something."""
     robot = Robot.load("leg3")
     sensor = ForceSensor("foot", mass=0.3, center=(0.01, 0.0, 0.02), inertia=(1e-3, 2e-3, 3e-3, 1e-4, 0.0, 0.0))
     push = Push("foot", (3.0, -1.0, 2.0), 0.01, 0.02)
     height = float(MujocoPlant(robot, observe=["foot"]).truth(MujocoPlant(robot).init()[1]).positions["foot"][2])
-    scene = Scene((table((0.0, 0.0, height - robot.contact_radius["foot"] + 1e-3)),))
+    scene = Scene((table((0.0, 0.0, height - robot.contact_radius["foot"] + 1e-3)),), contact=contact)
     plant = MujocoPlant(robot, scene, sensors=[sensor], pushes=[push], observe=["foot"], **options)
     assert plant.compiled is not None
     if python:
@@ -54,9 +54,10 @@ def torques(count: int) -> np.ndarray:
     return np.random.default_rng(4).normal(0.0, 4.0, (count, 3))
 
 
+@pytest.mark.parametrize("contact", ["mujoco", "explicit"])
 @pytest.mark.parametrize("compensation", ["none", "gravity+coriolis"])
-def test_a_period_in_mujoco_equals_the_python_loop(compensation: Any) -> None:
-    here, there = (arm(python, joints=JointEffects(compensation=compensation)) for python in (False, True))
+def test_a_period_in_mujoco_equals_the_python_loop(compensation: Any, contact: Any) -> None:
+    here, there = (arm(python, contact, joints=JointEffects(compensation=compensation)) for python in (False, True))
     (a, world), (b, twin) = here.init(), there.init()
     pressed = 0
     for k, torque in enumerate(torques(120)):
@@ -77,10 +78,11 @@ def driven(plant: MujocoPlant, world: Any) -> None:
         _, world = plant.step(Command(0.0, np.full(3, 30.0), np.zeros(3)), world)
 
 
-def test_a_joint_that_is_too_fast_ends_both_in_the_same_words() -> None:
+@pytest.mark.parametrize("contact", ["mujoco", "explicit"])
+def test_a_joint_that_is_too_fast_ends_both_in_the_same_words(contact: Any) -> None:
     said = []
     for python in (False, True):
-        plant = arm(python, speed_stop=0.5)
+        plant = arm(python, contact, speed_stop=0.5)
         _, world = plant.init()
         with pytest.raises(RunFailedError) as error:
             driven(plant, world)
@@ -184,4 +186,20 @@ def test_values_of_another_robot_are_refused() -> None:
     with pytest.raises(ValueError, match="out must have"):
         core.step(world.data, np.zeros(3), [], np.zeros(size - 1))
     with pytest.raises(ValueError, match="frame_of_geom"):
-        _plant.Physics(plant.model, library.addresses(library.FUNCTIONS), 1, False, [1.0], [1.0], [], [], [], [])
+        _plant.Physics(plant.model, library.addresses(library.FUNCTIONS), 1, False, [1.0], [1.0], [], [], [], [], [])
+
+
+def test_contacts_of_another_robot_are_refused() -> None:
+    plant = arm(contact="explicit")
+    _, world = plant.init()
+    assert plant.compiled is not None
+    core, out = plant.compiled.core, np.zeros(plant.compiled.size)
+    slots = np.zeros((len(world.contacts.force), 3))
+    assert core.read(world.data, slots, slots, out) == 0  # baseline: nothing touches
+    for force, point, name in ((slots[:0], slots, "force"), (slots, np.zeros((9, 3)), "point")):
+        with pytest.raises(ValueError, match=f"{name} must have 3 entries"):
+            core.read(world.data, force, point, out)
+    with pytest.raises(ValueError, match="out must have"):
+        core.hold(world.data, np.zeros(3), [], out[1:])
+    with pytest.raises(ValueError, match="torque must have"):
+        core.hold(world.data, np.zeros(2), [], out)

@@ -10,8 +10,10 @@ import numpy as np
 
 from pliant._plant import Physics
 from pliant.named_rows import NamedRows
+from pliant.simulation.contact.explicit import ExplicitContacts
 from pliant.simulation.disturbances import Push
 from pliant.simulation.mujoco_library import FUNCTIONS, addresses
+from pliant.simulation.stepping import PARTS, shares
 from pliant.simulation.what_touches import WhatTouches
 from pliant.simulation.world import World
 from pliant.spatial import Array, symmetric
@@ -31,6 +33,7 @@ class CompiledPeriod:
         limit: (n,) N·m.
         fastest: (n,) rad/s; infinite: no bound.
         pushes: disturbances.
+        explicit: contacts as forces, whose steps are another compiled loop; None: MuJoCo's own.
     """
 
     def __init__(
@@ -43,8 +46,10 @@ class CompiledPeriod:
         limit: Array,
         fastest: Array,
         pushes: Sequence[Push],
+        explicit: ExplicitContacts | None = None,
     ) -> None:
-        self._model = model
+        self._model, self._substeps, self.explicit = model, substeps, explicit
+        self._follows = coriolis or bool(pushes)
         self.contacts = tuple(dict.fromkeys(touches.frames.values()))
         """frames that can touch"""
         self.sensors = tuple(sensor.frame for sensor in touches.sensors)
@@ -69,6 +74,7 @@ class CompiledPeriod:
             fastest.tolist(),
             of_geom,
             [touches.sites[frame] for frame in self.contacts],
+            [] if explicit is None else [of_geom[geom] for geom in explicit.geom_of_slot],
             rows,
             self.rows(pushes),
         )
@@ -83,7 +89,19 @@ class CompiledPeriod:
         """Holds a torque (n,) for a period. Returns its outcome (`size`,), for `keep`, and a bit for each frame in
         contact; -1: a joint is too fast."""
         out = np.empty(self.size)
-        return out, self.core.step(world.data, torque, self.rows(world.pushes), out)
+        if self.explicit is None:
+            return out, self.core.step(world.data, torque, self.rows(world.pushes), out)
+        return out, self._step_explicit(world, torque, self.explicit, out)
+
+    def _step_explicit(self, world: World, torque: Array, explicit: ExplicitContacts, out: Array) -> int:
+        data, contacts, pushes = world.data, world.contacts, self.rows(world.pushes)
+        assert contacts is not None
+        for steps in shares(self._substeps, PARTS if self._follows or pushes else 1):
+            self.core.hold(data, torque, pushes, out)
+            explicit.advance(contacts, steps)
+            mujoco.mj_step1(self._model, data)
+        explicit.refresh(contacts)
+        return self.core.read(data, contacts.force, contacts.point, out)
 
     def keep(self, world: World, out: Array, mask: int) -> None:
         """Writes a period's outcome (`size`,) and the contacts into the world."""
@@ -112,4 +130,4 @@ def compiled_period_of(plant: Any) -> CompiledPeriod | None:
     period = getattr(plant, "compiled", None)
     if not isinstance(period, CompiledPeriod) or len(set(period.sensors)) < len(period.sensors):
         return None
-    return period
+    return period if period.explicit is None else None

@@ -193,9 +193,8 @@ class MujocoPlant(Plant[World]):
             self.joints,
             self.pushes,
         )
-        self.compiled = self._compile() if self.explicit is None and can_look_inside() else None
-        """its period as one call; None where contacts are explicit or MuJoCo is not the one that pliant was compiled
-        for"""
+        self.compiled = self._compile() if can_look_inside() else None
+        """its compiled period; None where MuJoCo is not the one that pliant was compiled for"""
 
     def _compile(self) -> CompiledPeriod:
         return CompiledPeriod(
@@ -206,6 +205,7 @@ class MujocoPlant(Plant[World]):
             limit=self._limit,
             fastest=self._fastest,
             pushes=self.pushes,
+            explicit=self.explicit,
         )
 
     def _check_speed(self, world: World) -> None:

@@ -11,15 +11,14 @@ from pliant.simulation.contact.explicit import ExplicitContacts
 from pliant.simulation.contact.mujoco_forces import contact_wrenches
 from pliant.simulation.disturbances import Push
 from pliant.simulation.joint_effects import JointEffects
-from pliant.simulation.stepping import shares
+from pliant.simulation.stepping import PARTS, shares
 from pliant.simulation.what_touches import WhatTouches
 from pliant.simulation.world import World
 from pliant.spatial import Array
 
 
 class PythonPeriod:
-    """A period where contacts are explicit forces, whose loop is compiled, or where MuJoCo is not the one that pliant
-    was compiled for; else `CompiledPeriod` does the same.
+    """A period where MuJoCo is not the one that pliant was compiled for; else `CompiledPeriod` does the same.
 
     Args:
         model: compiled.
@@ -73,7 +72,7 @@ class PythonPeriod:
 
     def _step_explicit(self, world: World, contacts: ExplicitContacts) -> None:
         assert world.contacts is not None
-        for steps in shares(self._substeps, 4 if self._follows_state(world) else 1):
+        for steps in shares(self._substeps, PARTS if self._follows_state(world) else 1):
             self._apply(world)
             contacts.advance(world.contacts, steps)
             mujoco.mj_step1(self._model, world.data)

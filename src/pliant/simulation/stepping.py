@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from pliant.errors import ConfigError
 from pliant.sampling import whole_periods
+
+PARTS = 4
+"""of a period with explicit contacts, in each of which a force that changes within the period is constant"""
 
 
 def substeps(period: float, physics_step: float) -> int:
@@ -20,4 +21,6 @@ def substeps(period: float, physics_step: float) -> int:
 
 def shares(total: int, parts: int) -> list[int]:
     """A whole number in about equal parts, none of them zero."""
-    return [len(part) for part in np.array_split(np.arange(total), min(parts, total))]
+    parts = min(parts, total)
+    size, longer = divmod(total, parts)
+    return [size + 1] * longer + [size] * (parts - longer)

@@ -71,7 +71,15 @@ class ExplicitContacts:
         self.model = model
         self.pairs = tuple(pairs)
         self._geoms = [(model.geom(pair.geom_a).id, model.geom(pair.geom_b).id) for pair in self.pairs]
-        self._slots = self._fill(ContactLoop(model, mujoco.MjData(model), *addresses(HALF_STEPS)))
+        self.slots = self._fill(ContactLoop(model, mujoco.MjData(model), *addresses(HALF_STEPS)))
+        """of each pair, its rows in the arrays of a state"""
+
+    @property
+    def geom_of_slot(self) -> list[int]:
+        """The first geom of the pair of each row."""
+        return [
+            geom for (geom, _), rows in zip(self._geoms, self.slots, strict=True) for _ in range(rows.start, rows.stop)
+        ]
 
     def init(self, data: mujoco.MjData) -> ContactState:
         """Untouched contacts of a world, at the forces of its present configuration."""
@@ -86,7 +94,7 @@ class ExplicitContacts:
             point=np.zeros((n, 3)),
             penetration=np.zeros(n),
         )
-        for pair, slots in zip(self.pairs, self._slots, strict=True):
+        for pair, slots in zip(self.pairs, self.slots, strict=True):
             state.bristles[slots, 3] = pair.material.mu_static
         mujoco.mj_step1(self.model, data)
         self.refresh(state)
@@ -109,7 +117,7 @@ class ExplicitContacts:
 
     def wrench(self, state: ContactState, index: int, about: Array) -> Array:
         """Wrench (6,) on the first geom of pair number `index`, about a point (3,), world axes."""
-        slots = self._slots[index]
+        slots = self.slots[index]
         force, lever = state.force[slots], state.point[slots] - about
         moment = cross(lever[0], force[0]) if len(force) == 1 else np.cross(lever, force).sum(axis=0)
         return np.concatenate([force.sum(axis=0), moment])
@@ -117,14 +125,14 @@ class ExplicitContacts:
     def force_on(self, state: ContactState, geom: str) -> Array:
         """Sum of all contact forces on a geom (3,), N, world axes."""
         total = np.zeros(3)
-        for pair, slots in zip(self.pairs, self._slots, strict=True):
+        for pair, slots in zip(self.pairs, self.slots, strict=True):
             sign = (pair.geom_a == geom) - (pair.geom_b == geom)
             total += sign * state.force[slots].sum(axis=0)
         return total
 
     def touching(self, state: ContactState, index: int) -> bool:
         """Whether pair number `index` is in contact."""
-        return bool(np.any(state.force[self._slots[index]]))
+        return bool(np.any(state.force[self.slots[index]]))
 
     def _fill(self, loop: ContactLoop) -> list[slice]:
         return [self._add(loop, *geoms, pair) for geoms, pair in zip(self._geoms, self.pairs, strict=True)]
@@ -146,7 +154,7 @@ class ExplicitContacts:
 
     def _blown_up(self, state: ContactState, dt: float) -> str:
         worst = int(np.argmax(np.where(np.isfinite(state.penetration), state.penetration, np.inf)))
-        index = next(i for i, slots in enumerate(self._slots) if slots.start <= worst < slots.stop)
+        index = next(i for i, slots in enumerate(self.slots) if slots.start <= worst < slots.stop)
         pair = self.pairs[index]
         return (
             f"the simulation of contacts diverged (deepest: {pair.geom_a!r} in {pair.geom_b!r}, K ="
