@@ -49,12 +49,11 @@ def subdivided(points: Array, step: float) -> Array:
     """Straight pieces cut into equal parts no longer than `step`."""
     points = _without_repeats(points)
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    parts: list[Array] = [points[:1]]
-    for start, end, length in zip(points[:-1], points[1:], lengths, strict=True):
-        count = max(math.ceil(float(length) / step - 1e-9), 1)
-        share = np.linspace(0.0, 1.0, count + 1)[1:, None]
-        parts.append(start + share * (end - start))
-    return np.vstack(parts)
+    counts = np.maximum(np.ceil(lengths / step - 1e-9), 1).astype(int)
+    piece = np.repeat(np.arange(len(counts)), counts)
+    nth = np.arange(len(piece)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+    share = np.where(nth == counts[piece], 1.0, nth * (1.0 / counts[piece]))[:, None]
+    return np.vstack([points[:1], points[piece] + share * (points[piece + 1] - points[piece])])
 
 
 def _arc(corner: Array, before: Array, after: Array, cut: float, radius: float, angle: float, step: float) -> Array:

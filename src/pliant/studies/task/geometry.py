@@ -116,8 +116,12 @@ def good_place(robot: Robot, frame: str, normal: Array, curvature: float) -> Arr
         best, most = None, 0.0
         for share, height in itertools.product(shares, heights):
             at = length * (share * direction + np.array([0.0, 0.0, height]))
-            least = min(free(at, step) for step in _AROUND)
-            if least > most:
+            least = math.inf
+            for step in _AROUND:
+                least = min(least, free(at, step))
+                if least <= most:
+                    break  # another place is better, whatever is found around this one
+            else:
                 best, most = at, least
         if best is not None:
             return best
