@@ -213,9 +213,9 @@ def _report(frame: _Frame, diagnostics: dict[str, float | Array]) -> None:
         *[axis.unreachable for axis in axes],
         *[axis.clamped for axis in axes],
     ]
-    table = np.array(values, dtype=np.float64).reshape(len(names), count)
-    for name, row in zip(names, table, strict=True):
-        diagnostics[name] = row
+    table = np.array(values, dtype=np.float64)
+    for at, name in enumerate(names):
+        diagnostics[name] = table[at * count : at * count + count]
 
 
 def _shifted(
