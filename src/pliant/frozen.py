@@ -40,7 +40,7 @@ def quick(kind: type[_Value]) -> type[_Value]:
 
 
 def changed(value: _Value, **fields: Any) -> _Value:
-    """`dataclasses.replace` in a third of the time, for a dataclass whose slots are all of its own class. It skips
+    """`dataclasses.replace` in two thirds of the time, for a dataclass whose slots are all of its own class. It skips
     `__post_init__`: do not use it for classes that check their fields.
 
     Raises:

@@ -70,7 +70,7 @@ def run(
     for _ in clock:
         try:
             estimate, reference, command, wall, fault = cycle.step(measurement)
-            seen = guard.shown(fault, measurement, cycle.watched)
+            seen = guard.shown(fault, measurement, cycle.watched) if fault else measurement
             tick = Tick(seen, estimate, reference, command, plant.truth(world), wall, int(fault))
         except _WHATEVER as error:  # that a part raises: the run ends in order
             if cycle.command is None and isinstance(error, ConfigError | ShapeError | RobotError):

@@ -144,9 +144,8 @@ class _Bound:
 
     def __init__(self, core: Chain, n: int) -> None:
         self.core, self.n, self.size = core, n, core.belief_size
-        self._frames = tuple(core.frames)
-        self._wrenches = NamedRows(self._frames, 4 * n, 6)
-        self._touches = slice(4 * n + 6 * core.rows, 4 * n + 6 * core.rows + len(self._frames))
+        self._wrenches = NamedRows(core.frames, 4 * n, 6)
+        self._touches = tuple(enumerate(core.frames, start=4 * n + 6 * core.rows))
 
     def wrenches(self, out: Array) -> dict[str, Array]:
         """Frame → wrench (6,)."""
@@ -154,8 +153,7 @@ class _Bound:
 
     def contacts(self, out: Array) -> dict[str, bool]:
         """Frame → whether it touches."""
-        frames = self._frames
-        return dict(zip(frames, map(bool, out[self._touches].tolist()), strict=True)) if frames else {}
+        return {frame: bool(out.item(at)) for at, frame in self._touches}
 
 
 def _environments(frame: str, out: Array) -> dict[str, Environment]:

@@ -111,7 +111,7 @@ class Guard:
         fault = sound.reading_fault(reading, watched.n, watched.frames)
         if fault:
             return fault
-        frozen = self._frozen(reading, watched)
+        frozen = bool(self._noisy) and self._frozen(reading, watched)
         step, due = reading.time - watched.reading.time, watched.missed
         if watched.seen and step <= 0.0:
             return Fault.STALE if step == 0.0 else Fault.BACKWARD
@@ -212,16 +212,21 @@ class Guard:
     def _frozen(self, reading: Measurement, watched: Watched) -> bool:
         """Whether a noisy sensor has given too many equal readings."""
         frozen = False
+        last, equal = watched.last, watched.equal
         for name in self._noisy:
             now = _signal(reading, name)
-            count = watched.equal[name] = watched.equal.get(name, 0) + 1 if now == watched.last.get(name) else 0
-            watched.last[name] = now
-            frozen = frozen or count >= _FROZEN - 1
+            if now == last.get(name):
+                equal[name] = equal.get(name, 0) + 1
+                frozen = frozen or equal[name] >= _FROZEN - 1
+            elif equal:
+                equal[name] = 0
+            last[name] = now
         return frozen
 
 
 def _signal(reading: Measurement, name: str) -> bytes:
-    if name == "wrenches":
-        return b"".join([wrench.tobytes() for wrench in reading.wrenches.values()])
-    value: Array = getattr(reading, name)
-    return value.tobytes()
+    if name != "wrenches":
+        value: Array = getattr(reading, name)
+        return value.tobytes()
+    felt = [wrench.tobytes() for wrench in reading.wrenches.values()]
+    return felt[0] if len(felt) == 1 else b"".join(felt)
