@@ -57,7 +57,18 @@ def test_trials_are_of_what_there_is_and_once() -> None:
     assert {one.robot for one in trials()} <= set(CATALOGUE)
 
 
-@pytest.mark.parametrize(("name", "holds"), [("offset-free-mpc", True), ("classical-mpc", False)])
-def test_what_is_told_can_be_found_again(name: str, holds: bool) -> None:
-    trial = next(one for one in trials() if one.controller == name and (one.verdict == HOLDS) is holds)
+def test_what_no_suggestion_changes_is_told_where_a_controller_fails() -> None:
+    """The control has failed nowhere, or nothing of it is fixed."""
+    for name, told in (("stack-paper", True), ("haptic-paper", True), ("haptic", False)):
+        words = CLI.invoke(app, ["list", "controllers", name]).stdout
+        assert ("what is suggested changes its gains, not this" in words) is told, name
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "holds"),
+    [("offset-free-mpc", "iiwa14", True), ("classical-mpc", "ur3", False), ("haptic", "leg3", True)],
+)
+def test_what_is_told_can_be_found_again(name: str, robot: str, holds: bool) -> None:
+    cells = [one for one in trials() if (one.controller, one.robot) == (name, robot)]
+    trial = next(one for one in cells if (one.verdict == HOLDS) is holds)
     assert domains.run(trial.controller, trial.robot, trial.stiffness, trial.delay) == trial.verdict

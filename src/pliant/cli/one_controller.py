@@ -38,6 +38,7 @@ def print_controller(console: Console, entry: ControllerEntry[Any]) -> None:
     found = [one for one in trials() if one.controller == entry.name]
     if found:
         _print_domain(console, found)
+        _print_fixed(console, entry, found)
     else:
         console.print(f"where {entry.name} holds was not measured", markup=False, highlight=False, soft_wrap=True)
 
@@ -66,12 +67,21 @@ def _print_domain(console: Console, found: list[DomainRun]) -> None:
         table.add_column(f"{stiffness:g} N/m")
     verdicts = {(one.robot, one.delay, one.stiffness): one.verdict for one in found}
     reasons = list(dict.fromkeys(one.verdict for one in found if one.verdict != HOLDS))
+    places = {one.robot: f"{one.robot}, {one.place}" for one in found if one.place}
     for robot, delay in dict.fromkeys((one.robot, one.delay) for one in found):
         cells = [verdicts.get((robot, delay, stiffness)) for stiffness in columns]
-        table.add_row(robot, f"{1e3 * delay:g}", *(_cell(cell, reasons) for cell in cells))
+        table.add_row(places.get(robot, robot), f"{1e3 * delay:g}", *(_cell(cell, reasons) for cell in cells))
     console.print(table)
     for number, reason in enumerate(reasons, start=1):
         console.print(f"({number}) {reason}", markup=False, highlight=False)
+
+
+def _print_fixed(console: Console, entry: ControllerEntry[Any], found: list[DomainRun]) -> None:
+    """Where a controller fails, what of it no suggestion changes."""
+    fixed = ", ".join(f"{key} = {value}" for key, value in flat(entry.fixed).items())
+    if fixed and any(one.verdict != HOLDS for one in found):
+        told = f"{entry.name} is defined by {fixed}: what is suggested changes its gains, not this"
+        console.print(told, markup=False, highlight=False, soft_wrap=True)
 
 
 def _cell(verdict: str | None, reasons: list[str]) -> str:

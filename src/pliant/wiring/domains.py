@@ -24,6 +24,8 @@ class DomainRun:
     """s from a reading to the effect of its command"""
     verdict: str
     """`holds`, or what kept it from that"""
+    place: str = ""
+    """what stood otherwise than a level surface before an arm"""
 
 
 @cache
