@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, ShapeError, SignalError
-from pliant.spatial import as_vector, exp3, frame_with_z_along, log3, rpy, skew
+from pliant.spatial import as_vector, exp3, frame_with_z_along, log3, quaternions, rpy, skew
 from tests.rotations import left_jacobian_inverse
 
 directions = st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda d: math.hypot(*d) > 1e-2)
@@ -52,6 +52,21 @@ def test_surface_frame_has_its_normal_as_z(direction: tuple[float, float, float]
     np.testing.assert_allclose(R[:, 2], np.array(direction) / np.linalg.norm(direction), atol=1e-9)
     np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-9)
     assert np.linalg.det(R) == pytest.approx(1.0)
+
+
+def test_quaternions_have_the_bits_of_pinocchio() -> None:
+    rng = np.random.default_rng(0)
+    sizes = np.repeat([0.0, 1e-9, 0.1, 1.0, 2.0, math.pi - 1e-9, math.pi], 50)  # each entry is the largest somewhere
+    axes = rng.standard_normal((len(sizes), 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    rotations = np.array([exp3(size * axis) for size, axis in zip(sizes, axes, strict=True)])
+    wanted = [[q.w, q.x, q.y, q.z] for q in map(pin.Quaternion, rotations)]
+    np.testing.assert_array_equal(quaternions(rotations), wanted)
+    assert set(np.argmax(np.abs(wanted), axis=1)) == {0, 1, 2, 3}
+    rotations[3, 1, 1] = math.nan
+    found = quaternions(rotations)
+    assert np.isnan(found[3]).all()
+    assert np.isfinite(np.delete(found, 3, axis=0)).all()
 
 
 def test_rpy_and_skew() -> None:

@@ -76,8 +76,33 @@ def rpy(roll: float, pitch: float, yaw: float) -> Array:
 
 def quaternion(R: Array) -> Array:
     """Unit quaternion (w, x, y, z) of a rotation matrix (3, 3). Its sign is arbitrary."""
-    q = pin.Quaternion(R)
-    return np.array([q.w, q.x, q.y, q.z])
+    return quaternions(R)[0]
+
+
+def quaternions(rotations: Array) -> Array:
+    """Unit quaternions of rotation matrices, bit for bit as Eigen makes them (Shepperd's method).
+
+    Not pinocchio's own class: each of its quaternions that is made of a matrix loses 80 bytes of memory for good.
+
+    Args:
+        rotations: (n, 3, 3).
+
+    Returns:
+        (n, 4) as (w, x, y, z), of arbitrary sign; NaN where a matrix has entries that are not finite.
+    """
+    R = np.asarray(rotations, dtype=np.float64).reshape(-1, 3, 3)
+    rows, diagonal = np.arange(len(R)), np.diagonal(R, axis1=1, axis2=2)
+    i = np.argmax(diagonal, axis=1)
+    with np.errstate(invalid="ignore"):
+        trace = diagonal[:, 0] + (diagonal[:, 1] + diagonal[:, 2])
+        rest = diagonal[rows, i] - diagonal[rows, (i + 1) % 3] - diagonal[rows, (i + 2) % 3]
+        by_w = trace > 0.0  # w is far from 0; else the i-th entry of the vector is
+        root = np.sqrt(np.where(by_w, trace, rest) + 1.0)
+        turn = np.stack((R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]), axis=1)
+        vector = np.where(by_w[:, None], turn, R[rows, :, i] + R[rows, i, :]) * (0.5 / root)[:, None]
+        vector[rows[~by_w], i[~by_w]] = 0.5 * root[~by_w]
+        w = np.where(by_w, 0.5 * root, turn[rows, i] * (0.5 / root))
+    return np.column_stack((w, vector))
 
 
 def rotation_of_quaternion(q: npt.ArrayLike) -> Array:

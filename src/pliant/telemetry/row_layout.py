@@ -15,7 +15,7 @@ from pliant.signals import Tick
 from pliant.spatial import Array
 from pliant.telemetry.channels import Channel, Path, PlacedChannel
 from pliant.telemetry.info import RunInfo
-from pliant.telemetry.mcap.topics import Topic, is_rotation, logged, quaternions, topics
+from pliant.telemetry.mcap.topics import Topic, is_rotation, logged, topics, upper_quaternions
 from pliant.telemetry.schema import channels_of
 
 _MAPPINGS = {
@@ -121,5 +121,5 @@ class Block:
             values = self.rows[: self.count, at : at + channel.size].reshape(-1, *channel.shape)
             at += channel.size
             (stored,) = logged([channel])
-            found[stored.name] = quaternions(values) if is_rotation(channel) else values
+            found[stored.name] = upper_quaternions(values) if is_rotation(channel) else values
         return found

@@ -17,7 +17,7 @@ from pliant.references.trajectories.rotation import QuaternionSpline, Turning
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.trajectory import Trajectory
 from pliant.robot import Robot
-from pliant.spatial import Array, quaternion
+from pliant.spatial import Array, quaternions
 
 
 @dataclass(frozen=True)
@@ -96,15 +96,15 @@ def _joined(
         on_path = np.clip(start + grid - ends[1], 0.0, path.duration).tolist()
         turns += [path.rotation.at(time).rotation for time in on_path]
     instants = np.concatenate(times)
-    quaternions = np.array([quaternion(R) for R in turns])
-    return FrameMotion(frame, Spline(instants, np.vstack(places)), QuaternionSpline(instants, quaternions))
+    attitudes = quaternions(np.array(turns))
+    return FrameMotion(frame, Spline(instants, np.vstack(places)), QuaternionSpline(instants, attitudes))
 
 
 def _as_solved(robot: Robot, frame: str, solved: PosturePath) -> QuaternionSpline:
     """The frame's orientation along a joint path."""
     data, index = robot.model.createData(), robot.frame_id(frame)
-    quaternions = np.empty((len(solved.times), 4))
+    rotations = np.empty((len(solved.times), 3, 3))
     for row, q in enumerate(solved.postures):
         pin.framesForwardKinematics(robot.model, data, q)
-        quaternions[row] = quaternion(np.array(data.oMf[index].rotation))
-    return QuaternionSpline(solved.times, quaternions)
+        rotations[row] = data.oMf[index].rotation
+    return QuaternionSpline(solved.times, quaternions(rotations))

@@ -15,7 +15,7 @@ from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.references.trajectories.rotation import QuaternionSpline
 from pliant.references.trajectories.spline import Spline
 from pliant.signals import Reference
-from pliant.spatial import Array, quaternion
+from pliant.spatial import Array, quaternions
 from pliant.surfaces import SurfaceGeometry
 
 _STEP = 0.1  # s between samples
@@ -44,7 +44,7 @@ class Course:
         """As the motion of a frame."""
         if self.rotations is None:
             return FrameMotion(frame, Spline(self.times, self.places))
-        turns = np.array([quaternion(R) for R in self.rotations])
+        turns = quaternions(self.rotations)
         return FrameMotion(frame, Spline(self.times, self.places), QuaternionSpline(self.times, turns))
 
     def moved(self, shift: Array) -> Course:

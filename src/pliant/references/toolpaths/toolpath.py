@@ -16,7 +16,7 @@ from pliant.references.toolpaths.rows import PathRows
 from pliant.references.trajectories.rotation import QuaternionSpline
 from pliant.references.trajectories.spline import Spline
 from pliant.references.trajectories.waypoints import Waypoints
-from pliant.spatial import Array, quaternion, unit_rows
+from pliant.spatial import Array, quaternions, unit_rows
 from pliant.surfaces import SurfaceGeometry
 
 _KNOT = 0.01  # s between two knots of the splines
@@ -145,8 +145,8 @@ def resting(place: Array, normal: Array, time: float, motion: PathMotion, headin
     """A path that stays at a point (3,) m of a surface with normal (3,) for a time in s."""
     times = np.linspace(0.0, time, 5)
     places, normals = np.tile(place, (5, 1)), np.tile(normal, (5, 1))
-    task = np.array([quaternion(R) for R in task_rotations(normals, heading)])
-    tool = np.array([quaternion(R) for R in tool_rotations(places, normals, heading)])
+    task = quaternions(task_rotations(normals, heading))
+    tool = quaternions(tool_rotations(places, normals, heading))
     return Toolpath(
         times,
         places,
@@ -179,8 +179,8 @@ def timed(places: Array, normals: Array, speed: Array, motion: PathMotion, headi
         knots,
         upright,
         Spline(times, knots + motion.lift * upright, rests=True),
-        QuaternionSpline(times, np.array([quaternion(R) for R in rotations]), rests=True),
-        QuaternionSpline(times, np.array([quaternion(R) for R in task_rotations(upright, heading)]), rests=True),
+        QuaternionSpline(times, quaternions(rotations), rests=True),
+        QuaternionSpline(times, quaternions(task_rotations(upright, heading)), rests=True),
         Spline(times, done[:, None] / run.way[-1], rests=True),
     )
 

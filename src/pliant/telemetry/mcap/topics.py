@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.spatial import Array, quaternion
+from pliant.spatial import Array, quaternions
 from pliant.telemetry.channels import Channel
 from pliant.telemetry.mcap.messages import Template, template
 
@@ -145,7 +145,7 @@ def _in_order(channel: Channel) -> tuple[int, ...]:
     return tuple(range(channel.size))
 
 
-def quaternions(rotations: Array) -> Array:
+def upper_quaternions(rotations: Array) -> Array:
     """Unit quaternions of rotation matrices.
 
     Args:
@@ -154,7 +154,7 @@ def quaternions(rotations: Array) -> Array:
     Returns:
         (n, 4) as (w, x, y, z) with w ≥ 0.
     """
-    q = np.array([quaternion(R) for R in rotations]).reshape(-1, 4)
+    q = quaternions(rotations)
     return q * np.where(q[:, :1] < 0.0, -1.0, 1.0)
 
 
