@@ -1,18 +1,21 @@
-"""A long recording: memory does not grow with its length."""
+"""A long run: the memory of its recording does not grow with its length, that of its metrics by less than a channel."""
 
 from __future__ import annotations
 
 import ctypes
 import io
 import time
+import tracemalloc
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from pliant.signals import Tick
-from pliant.telemetry import Recorder
+from pliant.telemetry import Log, Recorder
+from pliant.telemetry.describe import log_metrics
 from tests.telemetry.recording import INFO
 
 BLOCK = 512  # ticks that a recorder writes at once
@@ -82,3 +85,33 @@ def test_a_recorder_does_not_grow(ticks: list[Tick]) -> None:
     assert growth(same, lambda: None) < ALLOWED
     leak: list[np.ndarray] = []
     assert growth(same, lambda: leak.append(np.ones(8 * BLOCK))) > ALLOWED  # 64 bytes of each tick are kept
+
+
+def peak_bytes(path: Path, of: Callable[[Log], object]) -> int:
+    """Most that is allocated at a time while something is made of a log."""
+    log = Log.open(path)
+    tracemalloc.start()
+    try:
+        of(log)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_metrics_need_less_of_a_log_than_a_channel(
+    ticks: list[Tick], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pliant.telemetry.mcap.file_bytes._HELD", 0)  # any file counts as long
+    lengths = {"short": 20, "long": 40}  # blocks: both beyond what is unpacked at a time
+    for name, blocks in lengths.items():
+        with Recorder(tmp_path / f"{name}.mcap", INFO) as recorder:
+            for number in range(blocks * BLOCK):
+                recorder(ticks[100 + number % BLOCK])
+    more = BLOCK * (lengths["long"] - lengths["short"])
+
+    def growth_per_tick(of: Callable[[Log], object]) -> float:
+        short, long = (peak_bytes(tmp_path / f"{name}.mcap", of) for name in lengths)
+        return (long - short) / more
+
+    assert growth_per_tick(log_metrics) < 40.0  # bytes: the times, their differences, and those sorted
+    assert growth_per_tick(lambda log: log["command/torque"]) > 55.0  # seven numbers

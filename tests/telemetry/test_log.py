@@ -12,8 +12,10 @@ import pytest
 from rich.console import Console
 
 from pliant.errors import ConfigError, OutputError
+from pliant.signals import Tick
 from pliant.telemetry import Log, Recorder, RunInfo
 from pliant.telemetry.describe import describe, log_metrics
+from tests.telemetry.recording import INFO, with_diagnostics
 from tests.telemetry.ticks import JOINTS, make_tick
 
 
@@ -196,3 +198,34 @@ def test_few_channels_stay_in_memory_and_the_others_are_read_again(
     assert again[second] is other
     assert again[first] is not held
     np.testing.assert_array_equal(again[first], held)
+
+
+def test_parts_of_a_long_log_are_its_channels(written: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = Log.open(io.BytesIO(written))
+    path = tmp_path / "long.mcap"
+    path.write_bytes(written)
+    monkeypatch.setattr("pliant.telemetry.mcap.file_bytes._HELD", 0)
+    monkeypatch.setattr("pliant.telemetry.log._PART", 100)
+    long = Log.open(path)
+    q, torque = usual["measurement/q"], usual["command/torque"]
+    where = (np.arange(len(q)) >= 37) & (np.arange(len(q)) < 601)
+    for log, count in ((usual, 1), (long, 6)):
+        parts = list(log.parts("measurement/q", "command/torque", where=where))
+        assert len(parts) == count
+        np.testing.assert_array_equal(np.concatenate([part for part, _ in parts]), q[where])
+        np.testing.assert_array_equal(np.concatenate([part for _, part in parts]), torque[where])
+        steps = [np.diff(part, axis=0) for (part,) in log.parts("measurement/q", where=where, before=1)]
+        np.testing.assert_array_equal(np.concatenate(steps), np.diff(q[where], axis=0))
+        assert list(log.parts("measurement/q", where=np.zeros(len(q), dtype=bool))) == []
+    assert len(list(long.parts("measurement/q"))) == -(-len(q) // 100)
+
+
+def test_a_channel_that_began_later_stands_beside_the_last_samples(ticks: list[Tick]) -> None:
+    with Recorder(None, INFO) as recorder:
+        for k, tick in enumerate(ticks[:60]):
+            late: dict[str, object] = {"late": float(k)} if k >= 20 else {}
+            recorder(with_diagnostics(tick, **late))
+    log = recorder.log()
+    ((found, q),) = log.parts("late", "truth/q")
+    np.testing.assert_array_equal(found, np.arange(20.0, 60.0))
+    np.testing.assert_array_equal(q, log["truth/q"][20:])

@@ -10,6 +10,7 @@ from pliant.estimation import start_hints
 from pliant.robot import Robot
 from pliant.signals import Tick
 from pliant.spatial import Array
+from pliant.telemetry import in_parts
 from pliant.telemetry.log import Log
 
 LIMIT_TOLERANCE = math.radians(1.0)
@@ -47,20 +48,21 @@ class StartNotes:
 def _limit_passed(log: Log, robot: Robot) -> str | None:
     if "truth/limit_excess" not in log:
         return None
-    excess, time = log["truth/limit_excess"], log.time("truth/limit_excess")
+    name = "truth/limit_excess"
     slides = _slides(robot)
-    share = excess / np.where(slides, LIMIT_TOLERANCE_LINEAR, LIMIT_TOLERANCE)
-    joint = int(np.argmax(share.max(axis=0)))
-    beyond = share[:, joint] > 1.0
-    if not beyond.any():
+    tolerance = np.where(slides, LIMIT_TOLERANCE_LINEAR, LIMIT_TOLERANCE)
+    most = in_parts.largest(np.max(part, axis=0) for (part,) in log.parts(name))
+    joint = int(np.argmax(most / tolerance))
+    if not most[joint] > tolerance[joint]:
         return None
-    worst = float(excess[:, joint].max())
+    worst = float(most[joint])
     size, allowed = (
         (f"{1e3 * worst:.1f} mm", f"{1e3 * LIMIT_TOLERANCE_LINEAR:g} mm")
         if slides[joint]
         else (f"{math.degrees(worst):.1f}°", f"{math.degrees(LIMIT_TOLERANCE):g}°")
     )
-    since = float(time[int(np.argmax(beyond))])
+    beyond = np.concatenate([part[:, joint] > tolerance[joint] for (part,) in log.parts(name)])
+    since = float(log.time(name)[int(np.argmax(beyond))])
     return (
         f"joint limit passed: {robot.joint_names[joint]} by {size}, first at t = {since:.2f} s (more than {allowed}"
         " beyond a limit is not a success)"
@@ -70,12 +72,12 @@ def _limit_passed(log: Log, robot: Robot) -> str | None:
 def _never_touched(log: Log) -> str | None:
     names = log.matching("/wrench")
     felt = [name for name in names if name.startswith("truth/")]
-    if not felt or any(np.any(log[name][:, :3]) for name in felt):
+    if not felt or any(np.any(part[:, :3]) for name in felt for (part,) in log.parts(name)):
         return None
     for name in names:
         if not name.startswith("reference/"):
             continue
-        asked = float(np.linalg.norm(log[name][:, :3], axis=1).max())
+        asked = float(in_parts.largest(np.linalg.norm(part[:, :3], axis=1).max() for (part,) in log.parts(name)))
         if asked > 0.0:
             frame = name.removeprefix("reference/").removesuffix("/wrench")
             return f"no contact: frame {frame} should press with {asked:.3g} N and the robot touched nothing"

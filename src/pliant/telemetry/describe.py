@@ -7,7 +7,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pliant.telemetry import metrics
+from pliant.telemetry import in_parts, metrics
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 from pliant.telemetry.table import number
@@ -32,17 +32,25 @@ def log_metrics(log: Log) -> tuple[Metric, ...]:
     for frame in frames(log):
         found += _tracking(log, frame)
         found += _force(log, frame)
-    if "command/torque" in log and log["command/torque"].shape[0] > 1:
-        torque, time = log["command/torque"], log.time("command/torque")
-        period = float(np.median(np.diff(time)))
-        found.append(Metric("torque variation", metrics.torque_variation(torque, period), "N·m/s"))
-        found.append(Metric("peak torque", metrics.peak(torque), "N·m"))
-        if len(log.info.torque_limits) == torque.shape[1]:
-            step = metrics.torque_step_fraction(torque, np.array(log.info.torque_limits))
-            found.append(Metric("torque change per tick", 100.0 * step, "% of limit"))
-        clamped = np.any(log["command/clamped"] != 0.0, axis=1)
-        found.append(Metric("time at a torque limit", 100.0 * float(np.mean(clamped)), "%"))
+    if "command/torque" in log and log.channels["command/torque"].count > 1:
+        found += _torque(log)
     return tuple(found)
+
+
+def _torque(log: Log) -> list[Metric]:
+    sent, limits = "command/torque", np.array(log.info.torque_limits)
+    period = float(np.median(np.diff(log.time(sent))))
+    steps = in_parts.mean(np.abs(np.diff(part, axis=0)) for (part,) in log.parts(sent, before=1))
+    peak = in_parts.largest(metrics.peak(part) for (part,) in log.parts(sent))
+    found = [
+        Metric("torque variation", float(np.mean(steps)) / period, "N·m/s"),
+        Metric("peak torque", float(peak), "N·m"),
+    ]
+    if log.channels[sent].shape == limits.shape:
+        step = in_parts.largest(metrics.torque_step_fraction(part, limits) for (part,) in log.parts(sent, before=1))
+        found.append(Metric("torque change per tick", 100.0 * float(step), "% of limit"))
+    clamped = in_parts.mean(np.any(part != 0.0, axis=1) for (part,) in log.parts("command/clamped"))
+    return [*found, Metric("time at a torque limit", 100.0 * float(clamped), "%")]
 
 
 def frames(log: Log) -> list[str]:
@@ -52,25 +60,22 @@ def frames(log: Log) -> list[str]:
 
 def _tracking(log: Log, frame: str) -> list[Metric]:
     actual, reference = f"truth/{frame}/position", f"reference/{frame}/position"
-    if actual not in log or log[actual].shape != log[reference].shape:
+    if actual not in log or log.channels[actual].count != log.channels[reference].count:
         return []
-    errors = metrics.rmse(log[actual], log[reference]) * _MM
+    errors = _MM * np.sqrt(in_parts.mean((a - b) ** 2 for a, b in log.parts(actual, reference)))
     return [
         Metric(f"{frame} position rmse {axis}", float(error), "mm") for axis, error in zip("xyz", errors, strict=True)
     ]
 
 
 def _force(log: Log, frame: str) -> list[Metric]:
-    wanted = log[f"reference/{frame}/wrench"][:, :3]
+    wanted = f"reference/{frame}/wrench"
     source = next((f"{s}/{frame}/wrench" for s in ("truth", "estimate") if f"{s}/{frame}/wrench" in log), None)
-    if source is None or log[source].shape[0] != wanted.shape[0]:
+    if source is None or log.channels[source].count != log.channels[wanted].count:
         return []
-    actual = log[source][:, :3]
-    asked = [axis for axis in range(3) if np.any(wanted[:, axis] != 0.0)]
-    return [
-        Metric(f"{frame} force rms error {'xyz'[axis]}", metrics.rms_error(actual[:, axis], wanted[:, axis]), "N")
-        for axis in asked
-    ]
+    asked = in_parts.largest(np.max(part[:, :3] != 0.0, axis=0) for (part,) in log.parts(wanted))
+    errors = np.sqrt(in_parts.mean((a[:, :3] - b[:, :3]) ** 2 for a, b in log.parts(source, wanted)))
+    return [Metric(f"{frame} force rms error {'xyz'[axis]}", errors[axis], "N") for axis in np.flatnonzero(asked)]
 
 
 def _header(log: Log) -> RenderableType:

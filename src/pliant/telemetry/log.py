@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -17,12 +16,14 @@ from pliant.spatial import Array
 from pliant.telemetry.columns import columns, data_frame
 from pliant.telemetry.info import RunInfo
 from pliant.telemetry.mcap.file_bytes import bytes_of
-from pliant.telemetry.mcap.reader import Contents, Piece, read
-from pliant.telemetry.mcap.topics import FIELDS, PREFIX
+from pliant.telemetry.mcap.reader import Contents, read
+from pliant.telemetry.mcap.topics import PREFIX
+from pliant.telemetry.stored import StoredChannel, stored_channels
 
 CLOCK = "pliant.clock"
 """metadata record of a run whose clock started below zero: MCAP has no such times, so the file's clock is ahead"""
 _CACHED = 64 * 2**20  # bytes of channels that stay in memory; those of a longer log are read again
+_PART = 8 * 512  # samples of a long log that are read at once: a few chunks, which stay unpacked for other channels
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,38 +45,6 @@ class LogChannel:
     """ROS 2 topic that carries it"""
 
 
-@dataclass(frozen=True, slots=True)
-class _Stored:
-    """Samples of one channel in the file: pieces of messages, and the bytes at which the numbers start."""
-
-    topic: str
-    unit: str
-    shape: tuple[int, ...]
-    labels: tuple[str, ...]
-    pieces: list[tuple[Piece, Sequence[int]]]
-    zero: int
-    """ns of the file's clock at which that of the run is zero"""
-
-    @property
-    def count(self) -> int:
-        return sum(piece.count for piece, _ in self.pieces)
-
-    def times(self) -> Array:
-        """(n,) s."""
-        times = np.concatenate([piece.times() for piece, _ in self.pieces])
-        return (times - self.zero).astype(np.float64) * 1e-9
-
-    def ends(self) -> tuple[float, float]:
-        """s: times of the first sample and the last."""
-        first, last = self.pieces[0][0].times()[0], self.pieces[-1][0].times()[-1]
-        return float(first - self.zero) * 1e-9, float(last - self.zero) * 1e-9
-
-    def values(self) -> Array:
-        """(n, …) numbers."""
-        values = np.concatenate([_numbers(piece.messages(), offsets) for piece, offsets in self.pieces])
-        return values.reshape(len(values), *self.shape)
-
-
 class Log:
     """The contents of one log. What is asked for is read; a long log stays in its file.
 
@@ -92,9 +61,10 @@ class Log:
         """name → metadata record of the file"""
         self.info = RunInfo.from_metadata(contents.metadata["pliant"])
         begin = int(contents.metadata.get(CLOCK, {}).get("zero_ns", "0"))
-        self._stored = _channels(contents, begin)
+        self._stored = stored_channels(contents, begin)
         phases = contents.texts(f"{PREFIX}/reference/phase")
         self._phases = [(time - 1e-9 * begin, text) for time, text in phases]
+        self._held = contents.held
         self._times: dict[tuple[int, ...], Array] = {}
         self._values: dict[str, Array] = {}
         self.channels: Mapping[str, LogChannel] = MappingProxyType(
@@ -149,12 +119,43 @@ class Log:
         stored = self._found(name)
         values = self._values.pop(name, None)
         if values is None:
-            values = stored.values()
+            values = stored.values(0, stored.count)
             values.setflags(write=False)
         self._values[name] = values  # the last that was asked for stands last
         while sum(one.nbytes for one in self._values.values()) > _CACHED and len(self._values) > 1:
             del self._values[next(iter(self._values))]
         return values
+
+    def parts(
+        self, *names: str, where: npt.NDArray[np.bool_] | None = None, before: int = 0
+    ) -> Iterator[tuple[Array, ...]]:
+        """Channels side by side, some thousand samples of a long log at a time, all of another: what is made of them
+        needs no memory that grows with the log.
+
+        Args:
+            names: channels. Where one has fewer samples than another, it began later: the last ones stand side by side.
+            where: samples that count, one after the other, of the channel that has fewest; None: all.
+            before: samples that a part has once more of the one before it, 1 for changes from sample to sample.
+
+        Yields:
+            (k, …) of each channel, in the order of the names; nothing where no sample counts.
+
+        Raises:
+            ConfigError: there is no such channel.
+        """
+        stored = [self._found(name) for name in names]
+        begin, end = 0, min(one.count for one in stored)
+        skipped = [one.count - end for one in stored]
+        if where is not None:
+            begin, end = int(np.argmax(where)), len(where) - int(np.argmax(where[::-1]))
+            begin = begin if where.any() else end
+        size = end - begin if self._held else _PART
+        for start in range(begin, end, max(size, 1)):
+            first, last = max(start - before, begin), min(start + size, end)
+            yield tuple(
+                self[name][skip + first : skip + last] if self._held else one.values(skip + first, skip + last)
+                for name, one, skip in zip(names, stored, skipped, strict=True)
+            )
 
     def time(self, name: str = "measurement/q") -> Array:
         """Times of a channel's samples, (n,) s since the start of the run.
@@ -163,7 +164,7 @@ class Log:
             ConfigError: there is no such channel.
         """
         stored = self._found(name)
-        key = tuple(id(piece) for piece, _ in stored.pieces)  # the channels of a topic share their times
+        key = tuple(id(piece.chunks) for piece, _ in stored.pieces)  # the channels of a row share their times
         if key not in self._times:
             self._times[key] = stored.times()
             self._times[key].setflags(write=False)
@@ -190,44 +191,12 @@ class Log:
         """The same as a polars DataFrame."""
         return data_frame("polars", columns(self, names))
 
-    def _found(self, name: str) -> _Stored:
+    def _found(self, name: str) -> StoredChannel:
         if name not in self._stored:
             raise ConfigError(f"{self.source} has no channel {name!r}; {options(self._stored, name)}")
         return self._stored[name]
 
-    def _describe(self, name: str, stored: _Stored) -> LogChannel:
+    def _describe(self, name: str, stored: StoredChannel) -> LogChannel:
         first, last = stored.ends()
         rate = (stored.count - 1) / (last - first) if last > first else 0.0
         return LogChannel(name, stored.unit, stored.shape, stored.labels, stored.count, rate, stored.topic)
-
-
-# ---------------------------------------------------------------------- from bytes to arrays
-
-
-def _channels(contents: Contents, begin: int) -> dict[str, _Stored]:
-    """Args: begin: ns of the file's clock at which that of the run is zero."""
-    found: dict[str, _Stored] = {}
-    for key in sorted(contents.channels):
-        channel = contents.channels[key]
-        fields = json.loads(channel.metadata.get(FIELDS, "{}"))
-        pieces = contents.pieces.get(key, [])
-        for name, about in fields.items() if pieces else ():
-            shape, offsets = tuple(about["shape"]), tuple(about["offsets"])
-            if max(offsets, default=0) + 8 > min(piece.length for piece in pieces):
-                raise ValueError(f"messages of {channel.topic} are shorter than {name} needs")
-            if name in found and found[name].shape != shape:
-                name = f"{name}[{','.join(map(str, shape))}]"  # a channel whose shape changed on the way
-            new = _Stored(channel.topic, about["unit"], shape, tuple(about["labels"]), [], begin)
-            found.setdefault(name, new).pieces.extend((piece, offsets) for piece in pieces)
-    return found
-
-
-def _numbers(messages: npt.NDArray[np.uint8], offsets: Sequence[int]) -> Array:
-    """(n, k) float64 from messages (n, bytes) and the bytes at which the numbers start."""
-    n, k = len(messages), len(offsets)
-    if k and list(offsets) == list(range(offsets[0], offsets[0] + 8 * k, 8)):  # neighbours, in one go
-        return np.ascontiguousarray(messages[:, offsets[0] : offsets[0] + 8 * k]).view("<f8")
-    values = np.empty((n, k))
-    for column, offset in enumerate(offsets):
-        values[:, column] = np.ascontiguousarray(messages[:, offset : offset + 8]).view("<f8")[:, 0]
-    return values

@@ -9,7 +9,7 @@ from pliant.robot import Robot
 from pliant.spatial import Array
 from pliant.studies.stack.build import place_of
 from pliant.studies.stack.config import StackCaseConfig
-from pliant.telemetry import metrics
+from pliant.telemetry import in_parts, metrics
 from pliant.telemetry.log import Log
 from pliant.telemetry.summary import Metric
 
@@ -32,33 +32,35 @@ def window(config: StackCaseConfig, log: Log) -> npt.NDArray[np.bool_]:
 def tracking_rmse(config: StackCaseConfig, log: Log) -> Array:
     """(3,) mm, true tool position against its reference, in the axes of the path: the paper's x, y, z."""
     tool, counts, axes = config.frames()[0], window(config, log), place_of(config).axes
-    actual, wanted = (log[f"{kind}/{tool}/position"][counts] @ axes for kind in ("truth", "reference"))
-    return 1e3 * metrics.rmse(actual, wanted)
+    both = log.parts(f"truth/{tool}/position", f"reference/{tool}/position", where=counts)
+    return 1e3 * np.sqrt(in_parts.mean(metrics.error_of(actual @ axes, wanted @ axes) ** 2 for actual, wanted in both))
 
 
 def _torques(config: StackCaseConfig, robot: Robot, log: Log) -> list[Metric]:
-    counts, torque = window(config, log), log["command/torque"]
-    step = 100.0 * metrics.torque_step_fraction(torque, robot.torque_limit)
-    variation = metrics.torque_variation(torque[counts], config.period)
+    sent, limits, counts = "command/torque", robot.torque_limit, window(config, log)
+    both = ([metrics.peak(part), metrics.torque_step_fraction(part, limits)] for (part,) in log.parts(sent, before=1))
+    peak, step = in_parts.largest(map(np.array, both))
+    steps = in_parts.mean(np.abs(np.diff(part, axis=0)) for (part,) in log.parts(sent, where=counts, before=1))
     return [
-        Metric("torque variation", variation, "N·m/s"),
-        Metric("peak torque", metrics.peak(torque), "N·m"),
-        Metric("torque step", step, "% of limit"),
+        Metric("torque variation", float(np.mean(steps)) / config.period, "N·m/s"),
+        Metric("peak torque", float(peak), "N·m"),
+        Metric("torque step", 100.0 * float(step), "% of limit"),
     ]
 
 
 def _rest_speed(log: Log) -> float:
     last_second = metrics.between(log.time("measurement/q"), log.duration - 1.0)
-    return metrics.peak(log["truth/v"][last_second])
+    return float(in_parts.largest(metrics.peak(part) for (part,) in log.parts("truth/v", where=last_second)))
 
 
 def _attractor(config: StackCaseConfig, log: Log) -> list[Metric]:
     if "ee/storage_margin" not in log:
         return []
     counts = window(config, log)
-    margin = float(np.min(log["ee/storage_margin"][:, :3]))
+    margin = -float(in_parts.largest(-np.min(part[:, :3]) for (part,) in log.parts("ee/storage_margin")))
+    switches = in_parts.mean(np.diff(part, axis=0) != 0.0 for (part,) in log.parts("ee/phase", where=counts, before=1))
     found = [
-        Metric("phase switches", metrics.switch_rate(log["ee/phase"][counts], config.period), "1/s per axis"),
+        Metric("phase switches", float(np.mean(switches)) / config.period, "1/s per axis"),
         Metric("storage margin of translation", margin, "J", at_least=True),
     ]
     if config.retuning is not None:
@@ -70,7 +72,7 @@ def largest_share(config: StackCaseConfig, log: Log) -> float:
     """Largest |h|/F_max over both tasks and all ticks, with the bound in force at each tick."""
     worst = 0.0
     for label, frame in zip(("ee", "elbow"), config.frames(), strict=True):
-        force = np.abs(log[f"{label}/force"])
-        bound = log[f"reference/{frame}/force_max"]
-        worst = max(worst, float(np.max(force[-len(bound) :] / bound)))  # the first change comes after the ramp
+        force, bound = f"{label}/force", f"reference/{frame}/force_max"
+        both = log.parts(force, bound)  # the first change comes after the ramp
+        worst = max(worst, float(in_parts.largest(np.max(np.abs(part) / most) for part, most in both)))
     return worst

@@ -10,64 +10,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, DataEnd, Footer, Metadata, Schema
-from mcap.stream_reader import get_chunk_data_stream
+from mcap.records import Channel, DataEnd, Footer, Metadata, Schema
 from mcap_ros2.decoder import DecoderFactory
 
 from pliant.errors import OutputError
 from pliant.telemetry.mcap.file_bytes import FileBytes, HeldBytes
-
-Bytes = npt.NDArray[np.uint8]
+from pliant.telemetry.mcap.pieces import MESSAGE, Piece, Place, Recent, StoredChunk, unpacked
 
 _MAGIC = b"\x89MCAP0\r\n"
 _RECORD = struct.Struct("<BQ")  # opcode, length
-_MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
 _TIME = 6  # bytes of a message before its log time
 _KEPT = 160 * 2**20  # bytes of unpacked chunks that stay in memory; those of a longer log are unpacked when asked for
-
-
-@dataclass
-class _Chunk:
-    """A chunk of a file: unpacked, or where it stands."""
-
-    file: FileBytes
-    start: int
-    end: int
-    data: bytes | None = None
-
-    def unpacked(self) -> bytes:
-        if self.data is not None:
-            return self.data
-        return _unpacked(self.file.part(self.start, self.end))
-
-
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """Messages of one channel in one chunk, all of the same length."""
-
-    chunk: _Chunk
-    at: int
-    """byte of the chunk where the first message's log time stands"""
-    stride: int
-    """bytes from one message of the channel to the next"""
-    count: int
-    length: int
-    """bytes of a message"""
-
-    def times(self) -> npt.NDArray[np.int64]:
-        """(count,) log times in ns."""
-        return np.ascontiguousarray(self._rows(0, 8)).view("<i8")[:, 0]
-
-    def messages(self) -> Bytes:
-        """(count, length) bytes."""
-        return self._rows(_MESSAGE.size - _TIME, self.length)
-
-    def _rows(self, start: int, length: int) -> Bytes:
-        data = np.frombuffer(self.chunk.unpacked(), dtype=np.uint8)[self.at + start :]
-        return np.lib.stride_tricks.as_strided(data, (self.count, length), (self.stride, 1), writeable=False)
 
 
 @dataclass
@@ -79,12 +34,17 @@ class Contents:
     pieces: dict[int, list[Piece]] = field(default_factory=dict)
     """channel → its messages, in the order of the file"""
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    held: bool = True
+    """whether the bytes of the file are in memory"""
     complete: bool = False
     """False: the file ends or is damaged somewhere"""
-    chunks: list[_Chunk] = field(default_factory=list)
+    chunks: list[StoredChunk] = field(default_factory=list)
     """those that stay unpacked"""
     kept: int = 0
     """bytes that the chunks have, unpacked"""
+    recent: Recent = field(default_factory=Recent)
+    alike: dict[tuple[tuple[int, Place], ...], list[StoredChunk]] = field(default_factory=dict)
+    """channels and places of a row → the latest chunks with such rows"""
 
     def texts(self, topic: str) -> list[tuple[float, str]]:
         """Time (s) and text of each std_msgs/String on a topic."""
@@ -95,7 +55,8 @@ class Contents:
                 decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
                 assert decode is not None
                 for piece in self.pieces.get(key, []):
-                    messages = zip(piece.times(), piece.messages(), strict=True)
+                    rows = (row for _, part in piece.messages(0, piece.count) for row in part)
+                    messages = zip(piece.times(), rows, strict=True)
                     found += [(float(time) * 1e-9, str(decode(message.tobytes()).data)) for time, message in messages]
         return found
 
@@ -114,11 +75,11 @@ def read(name: str, file: bytes | FileBytes) -> Contents:
     if held.part(0, len(_MAGIC)) != _MAGIC:
         what = "is empty" if not held.size else "is not an MCAP file (wrong first bytes)"
         raise OutputError(f"{name} {what}; a pliant log ends in .mcap")
-    found, whole = Contents(), False
+    found, whole = Contents(held=isinstance(held, HeldBytes)), False
     with contextlib.suppress(Exception):  # any error of damaged bytes: what was read before is kept
         for opcode, start, content, crc in _file_records(held):
             if opcode == Opcode.CHUNK:
-                _take(found, _Chunk(held, start, start + len(content)), content)
+                _take(found, StoredChunk(held, start, start + len(content), found.recent), content)
             elif opcode == Opcode.METADATA:
                 record = Metadata.read(_stream(content))
                 found.metadata[record.name] = record.metadata
@@ -152,17 +113,17 @@ def _file_records(file: FileBytes) -> Iterator[tuple[int, int, bytes, int]]:
         crc = zlib.crc32(content, zlib.crc32(head, crc))
 
 
-def _take(found: Contents, chunk: _Chunk, packed: bytes) -> None:
+def _take(found: Contents, chunk: StoredChunk, packed: bytes) -> None:
     """Adds what a chunk holds: equally built rows at once, anything else message by message."""
-    data = _unpacked(packed)  # a damaged chunk gives nothing at all
+    data = unpacked(packed)  # a damaged chunk gives nothing at all
     _keep(found, chunk, data)
     first = True
     for opcode, start, end in _records(data, 0):
         if opcode == Opcode.MESSAGE:
-            rows = _rows(chunk, data, start - _RECORD.size) if first else []
-            alone = [(_channel(data, start), Piece(chunk, start + _TIME, 0, 1, end - start - _MESSAGE.size))]
-            for channel, piece in rows or alone:
-                found.pieces.setdefault(channel, []).append(piece)
+            rows = _rows(data, start - _RECORD.size) if first else []
+            _add(
+                found, chunk, tuple(rows) or ((_channel(data, start), Place(start, 0, 1, end - start - MESSAGE.size)),)
+            )
             if rows:
                 return
             first = False
@@ -174,7 +135,18 @@ def _take(found: Contents, chunk: _Chunk, packed: bytes) -> None:
             found.schemas[schema.id] = schema
 
 
-def _keep(found: Contents, chunk: _Chunk, data: bytes) -> None:
+def _add(found: Contents, chunk: StoredChunk, rows: tuple[tuple[int, Place], ...]) -> None:
+    """Adds messages of a chunk: to the pieces before, where those are of the same rows, so that a long log has few."""
+    chunks = found.alike.get(rows)
+    if chunks is not None and all(found.pieces[channel][-1].chunks is chunks for channel, _ in rows):
+        chunks.append(chunk)
+        return
+    found.alike[rows] = chunks = [chunk]
+    for channel, place in rows:
+        found.pieces.setdefault(channel, []).append(Piece(place, chunks))
+
+
+def _keep(found: Contents, chunk: StoredChunk, data: bytes) -> None:
     """Keeps a chunk of a file that is held unpacked, or none any more where all together are too large."""
     if not isinstance(chunk.file, HeldBytes):
         return
@@ -188,7 +160,7 @@ def _keep(found: Contents, chunk: _Chunk, data: bytes) -> None:
     found.chunks.clear()
 
 
-def _rows(chunk: _Chunk, data: bytes, at: int) -> list[tuple[int, Piece]]:
+def _rows(data: bytes, at: int) -> list[tuple[int, Place]]:
     """Channels and messages of a chunk from a byte on, if equally built rows fill it to its end; else nothing."""
     row: list[tuple[int, int, int]] = []
     for opcode, start, end in _records(data, at):
@@ -201,18 +173,22 @@ def _rows(chunk: _Chunk, data: bytes, at: int) -> list[tuple[int, Piece]]:
     count, rest = divmod(len(data) - at, stride)
     if rest or not _alike(data, at, count, stride, [start for _, start, _ in row]):
         return []
-    return [(c, Piece(chunk, start + _TIME, stride, count, end - start - _MESSAGE.size)) for c, start, end in row]
+    return [(channel, Place(start, stride, count, end - start - MESSAGE.size)) for channel, start, end in row]
 
 
 def _alike(data: bytes, at: int, count: int, stride: int, starts: list[int]) -> bool:
-    """Whether opcode, length and channel of every message are those of the first row."""
+    """Whether opcode, length and channel of every message are those of the first row, and its time that of its row."""
     rows = np.frombuffer(data, dtype=np.uint8, offset=at).reshape(count, stride)
-    heads = [slice(start - at - _RECORD.size, start - at + 2) for start in starts]
-    return all(bool(np.all(rows[:, head] == rows[0, head])) for head in heads)
+    for start in (start - at for start in starts):
+        head, time = slice(start - _RECORD.size, start + 2), slice(start + _TIME, start + _TIME + 8)
+        first = slice(starts[0] - at + _TIME, starts[0] - at + _TIME + 8)
+        if not (np.all(rows[:, head] == rows[0, head]) and np.array_equal(rows[:, time], rows[:, first])):
+            return False
+    return True
 
 
 def _channel(data: bytes, start: int) -> int:
-    return int(_MESSAGE.unpack_from(data, start)[0])
+    return int(MESSAGE.unpack_from(data, start)[0])
 
 
 def _records(data: bytes, at: int) -> Iterator[tuple[int, int, int]]:
@@ -227,8 +203,3 @@ def _records(data: bytes, at: int) -> Iterator[tuple[int, int, int]]:
 
 def _stream(content: bytes) -> ReadDataStream:
     return ReadDataStream(io.BytesIO(content))
-
-
-def _unpacked(packed: bytes) -> bytes:
-    stream, size = get_chunk_data_stream(Chunk.read(_stream(packed)), validate_crc=True)
-    return stream.read(size)
