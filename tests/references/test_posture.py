@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -195,3 +197,21 @@ def test_jacobian_used_is_the_derivative_of_the_pose(robot: Robot, method: str) 
         up, down = (robot.placement(pin.integrate(robot.model, q, s * dq), "flange") for s in (1, -1))
         numeric = np.concatenate([up[0] - down[0], log3(up[1] @ down[1].T)]) / (2 * h)
         np.testing.assert_allclose(J[:, j], numeric, atol=1e-8)
+
+
+def test_a_motion_that_repeats_itself_is_solved_until_its_postures_do(robot: Robot) -> None:
+    motion, period, options = FrameMotion("flange", lemniscate(1.0), ALONG_Y).eased(0.5), 1.0, PostureOptions()
+    fast = replace(options, nominal_rate=8.0, speed_fraction=3.0)  # the drift ends within seconds
+    whole = posture_source(robot, motion, ("elbow",), 16.0, posture=fast)
+    short = posture_source(robot, motion, ("elbow",), 16.0, posture=replace(fast, repeats=period))
+    assert short.path.repeats == period
+    assert len(short.path.times) < 0.7 * len(whole.path.times)
+    for time in np.arange(0.0, 15.5, 0.137):
+        one, other = whole.at(time, time), short.at(time, time)
+        assert one.posture is not None
+        np.testing.assert_allclose(other.posture, one.posture, atol=1e-9)
+        for task, same in zip(one.tasks, other.tasks, strict=True):
+            np.testing.assert_allclose(same.position, task.position, atol=1e-9)
+            np.testing.assert_allclose(same.velocity, task.velocity, atol=1e-7)
+    wrong = posture_source(robot, motion, ("elbow",), 16.0, posture=replace(fast, repeats=0.9))
+    assert (wrong.path.repeats, len(wrong.path.times)) == (0.0, len(whole.path.times))

@@ -61,6 +61,8 @@ class PostureOptions:
     """whether the rotation about the frame's own z axis is free; a suitable one is then chosen"""
     restarts: int = 20
     """random configurations tried for the first pose if neither the nominal posture nor home lead there"""
+    repeats: float = 0.0
+    """s after which the motion repeats itself, once it has begun; 0: it does not"""
 
 
 @dataclass(frozen=True)
@@ -75,10 +77,21 @@ class PosturePath:
     """m, largest position error of the frame"""
     worst_angle: float
     """rad"""
+    repeats: float = 0.0
+    """s: the path goes on like its last period of this length; 0: its last posture is held"""
+
+    def inside(self, time: float) -> float:
+        """The time (s) of the sampled path at which it is as at `time`."""
+        end = float(self.times[-1]) - _EDGE * float(self.times[1] - self.times[0])
+        if not self.repeats or time <= end:
+            return time
+        return end - self.repeats + (time - end) % self.repeats
 
 
 _BRANCHES = 6  # starts that are tried before a motion is reported as unreachable
 _FALLBACK_SPEED = 10.0  # rad/s, for robots whose file has no limit
+_AGAIN = 1e-10  # rad between postures a period apart that count as the same
+_EDGE = 20  # samples at the end that a path which goes on leaves out: a spline's end is felt less by 0.27 a sample
 _AT_REST = 1e-12  # rad a sample: what is left of the drift then, at 0.5/s and 10 ms, is 2e-10 rad
 
 
@@ -93,7 +106,8 @@ def solve_posture(
 
     Every sample starts from the one before and may differ from it by no more than the joints' speed allows, so that
     the path stays on one branch. In the null space the arm moves as little as possible and drifts towards the nominal
-    posture. While the pose stays the same and that drift has ended, nothing is solved anew.
+    posture. While the pose stays the same and that drift has ended, nothing is solved anew. A motion that
+    repeats itself is solved until its postures do: then the path goes on like its last period.
 
     Args:
         robot: the arm.
@@ -181,6 +195,7 @@ def _follow(
     drift = min(1.0, chosen.nominal_rate * period)
     held, rests = _target(motion, 0.0, chosen), False
     worst = solver.shortfall(q, held)
+    again, alike = _samples(chosen.repeats, period), 0
     for index in range(1, times.shape[0]):
         target = _target(motion, float(times[index]), chosen)
         same, held = _same(target, held), target
@@ -197,7 +212,16 @@ def _follow(
         worst = (max(worst[0], short[0]), max(worst[1], short[1]))
         rests = same and float(np.max(np.abs(q - postures[index - 1]))) <= _AT_REST
         postures[index] = q
+        alike = alike + 1 if 0 < again <= index and np.abs(q - postures[index - again]).max() <= _AGAIN else 0
+        if alike == again + _EDGE:
+            return PosturePath(times[: index + 1], postures[: index + 1].copy(), *worst, chosen.repeats)
     return PosturePath(times, postures, worst[0], worst[1])
+
+
+def _samples(seconds: float, period: float) -> int:
+    """Samples in a span of time; 0 where they are not a whole number."""
+    count = round(seconds / period)
+    return count if abs(count * period - seconds) <= 1e-9 else 0
 
 
 def _target(motion: FrameMotion, time: float, chosen: PostureOptions) -> Target:

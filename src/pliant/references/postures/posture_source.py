@@ -35,7 +35,7 @@ def posture_source(
         robot: the arm.
         motion: of the tool frame; start it from rest (`motion.eased(2.0)`) so that the run can start at rest.
         secondary: frames (the elbow) whose positions follow from the posture; 3 axes each, orientation free.
-        duration: s; afterwards the last pose is held.
+        duration: s; afterwards the last pose is held. A motion whose postures repeat themselves before goes on.
         nominal: (n,) rad, see `solve_posture`.
         posture: how to solve it.
         tunings: frame → impedance parameters of a secondary task.
@@ -108,8 +108,9 @@ class PostureSource(ReferenceSource[Started]):
 
     def at(self, time: float, elapsed: float) -> Reference:
         """The reference at `time` of the loop's clock, `elapsed` s after the start."""
-        value, rate, acceleration = self._spline.at(elapsed)
-        tasks = [self._tool_task(elapsed, value, rate, acceleration)]
+        inside = self.path.inside(elapsed)
+        value, rate, acceleration = self._spline.at(inside)
+        tasks = [self._tool_task(elapsed, inside, value, rate, acceleration)]
         for task in self._others:
             tasks.append(
                 TaskReference(
@@ -124,11 +125,13 @@ class PostureSource(ReferenceSource[Started]):
             )
         return Reference(time, tuple(tasks), value[self._posture])
 
-    def _tool_task(self, elapsed: float, value: Array, rate: Array, acceleration: Array) -> TaskReference:
+    def _tool_task(
+        self, elapsed: float, inside: float, value: Array, rate: Array, acceleration: Array
+    ) -> TaskReference:
         rotation, velocity, change = self._tool.rotation, rate[self._tool.twist], acceleration[self._tool.twist]
-        if self._turning is not None and elapsed <= self.path.times[-1]:
+        if self._turning is not None and inside <= self.path.times[-1]:
             velocity, change = velocity.copy(), change.copy()
-            rotation, velocity[3:], change[3:] = self._turning.at(elapsed)
+            rotation, velocity[3:], change[3:] = self._turning.at(inside)
         elif self._turning is not None:
             rotation = self._turning.at(float(self.path.times[-1])).rotation
         wrench = self._no_wrench if self.motion.wrench is None else self.motion.wrench.at(elapsed).value

@@ -76,7 +76,11 @@ def placed(robot: Robot, path: StackPath, frames: tuple[str, str], duration: flo
         RobotError: it has no arm, or not the frames.
     """
     beyond_reach = path.kind == "stretch"
-    options = PostureOptions(method=path.method, tolerance=np.inf if beyond_reach else 1e-3)
+    options = PostureOptions(
+        method=path.method,
+        tolerance=np.inf if beyond_reach else 1e-3,
+        repeats=path.period if path.kind == "figure8" else 0.0,
+    )
     complaint: UnreachableError | None = None
     arm = _arm(robot)
     for frame in frames:
