@@ -51,7 +51,7 @@ def test_the_command_writes_the_same_trials_on_one_process_and_on_two(tmp_path: 
     tables = []
     for jobs in (1, 2):
         folder = tmp_path / str(jobs)
-        code, out, errors = study("toy", "--tune", "idle", "--trials", 20, "--jobs", jobs, "--out", folder)
+        code, out, errors = study("toy", "--tune", "idle", "--trials", 8, "--jobs", jobs, "--out", folder)
         assert code == 0, errors
         assert "gains.a" in out
         tables.append(pq.read_table(folder / "trials.parquet"))

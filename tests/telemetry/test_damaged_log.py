@@ -57,7 +57,7 @@ def test_a_flipped_byte_is_refused_or_said(whole: bytes) -> None:
     assert not intact.truncated
     rng = np.random.default_rng(0)
     outcomes = {"refused": 0, "said": 0, "no matter": 0}
-    for place in rng.choice(len(whole), 360, replace=False):
+    for place in rng.choice(len(whole), 150, replace=False):
         data = bytearray(whole)
         data[place] ^= 1 << int(rng.integers(8))
         log = opened(bytes(data))
@@ -68,7 +68,7 @@ def test_a_flipped_byte_is_refused_or_said(whole: bytes) -> None:
         else:
             outcomes["no matter"] += 1
             assert same(log, intact), f"byte {place} changed the log in silence"
-    assert outcomes["said"] > 300, outcomes
+    assert outcomes["said"] > 125, outcomes
 
 
 def test_each_byte_of_the_end_is_guarded(whole: bytes) -> None:
