@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 from hypothesis import HealthCheck, settings
+from xdist.remote import Producer
+from xdist.scheduler import LoadFileScheduling
 
 from pliant.robot import Robot
 from pliant.robots import CATALOGUE, is_available
@@ -12,21 +14,31 @@ settings.register_profile(
     "pliant", deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow], derandomize=True
 )
 settings.load_profile("pliant")
-_APART = 8  # files from one that drives a browser to the next
+
+
+class BrowsersTogether(LoadFileScheduling):
+    """The tests of a file run in one process, and those of all files that drive a browser in one and the same: a
+    second browser would take the processor from the first."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = super()._split_scope(nodeid)
+        return "browser" if _drives_browser(file) else file
+
+
+def _drives_browser(file: str) -> bool:
+    return file.endswith("browser.py")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> BrowsersTogether | None:
+    return BrowsersTogether(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files with studies come first: they take longest, and so the processes end at about the same time.
-
-    Those that drive a browser lie apart: each needs the whole machine, and they wait for each other.
-    """
+    """Browsers come first and then files with studies: they take longest, and so the processes end at about the same
+    time."""
     studies = {item.path for item in items if item.get_closest_marker("study")}
-    browsers = {item.path for item in items if "browser" in getattr(item, "fixturenames", ())}
-    files = sorted(dict.fromkeys(item.path for item in items), key=lambda path: path not in studies)
-    order = [path for path in files if path not in browsers]
-    for number, path in enumerate(path for path in files if path in browsers):
-        order.insert(_APART * number, path)
-    items.sort(key=lambda item: order.index(item.path))
+    items.sort(key=lambda item: (not _drives_browser(item.path.name), item.path not in studies))
 
 
 @pytest.fixture(scope="session")

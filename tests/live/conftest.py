@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import shutil
 import threading
@@ -174,17 +173,9 @@ def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
 
 
 @contextmanager
-def _alone(shared: Path) -> Iterator[None]:
-    """Waits for the other processes that drive a browser. Args: shared: a folder that they have in common."""
-    with (shared / "browser.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
-
-
-@contextmanager
 def served(browser: Browser, folder: Path, study: str, case: CaseConfig) -> Iterator[Live]:
-    """A page that shows a case, from its first samples on. The processes of a test run show theirs in turn."""
-    with _alone(folder.parents[1]), PageServer("127.0.0.1", 0) as server, live_page(server, folder) as page:
+    """A page that shows a case, from its first samples on."""
+    with PageServer("127.0.0.1", 0) as server, live_page(server, folder) as page:
         page.run.start(study, case)
         thread = threading.Thread(target=page.serve, daemon=True)
         thread.start()
