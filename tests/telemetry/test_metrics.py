@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from pliant.errors import ShapeError
-from pliant.telemetry import contact_metrics, metrics
+from pliant.telemetry import contact_metrics, in_parts, metrics
 
 T_S = 1e-3  # s
 finite = st.floats(-1e3, 1e3).map(lambda x: round(x, 9))  # squares of tinier numbers would vanish
@@ -158,3 +158,13 @@ def test_shapes_that_do_not_fit() -> None:
         metrics.torque_variation(np.zeros((1, 7)), T_S)
     with pytest.raises(ShapeError, match="odd"):
         metrics.moving_average(np.zeros(5), 4)
+
+
+def test_a_mean_over_steps_is_the_same_in_parts_that_begin_with_the_sample_before() -> None:
+    """Control: parts that begin with their own first sample miss the step between them."""
+    torque = np.array([[0.0], [1.0], [1.0], [9.0], [9.0], [10.0]])
+    whole = metrics.torque_variation(torque, T_S)
+    assert in_parts.of_steps(metrics.torque_variation, [(torque[:3],), (torque[2:],)], T_S) == pytest.approx(whole)
+    assert in_parts.of_steps(metrics.torque_variation, [(torque[:3],), (torque[3:],)], T_S) < 0.5 * whole
+    with pytest.raises(ShapeError, match="at least one sample"):
+        in_parts.of_steps(metrics.torque_variation, [(torque[:1],)], T_S)

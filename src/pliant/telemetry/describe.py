@@ -40,10 +40,10 @@ def log_metrics(log: Log) -> tuple[Metric, ...]:
 def _torque(log: Log) -> list[Metric]:
     sent, limits = "command/torque", np.array(log.info.torque_limits)
     period = float(np.median(np.diff(log.time(sent))))
-    steps = in_parts.mean(np.abs(np.diff(part, axis=0)) for (part,) in log.parts(sent, before=1))
+    variation = in_parts.of_steps(metrics.torque_variation, log.parts(sent, before=1), period)
     peak = in_parts.largest(metrics.peak(part) for (part,) in log.parts(sent))
     found = [
-        Metric("torque variation", float(np.mean(steps)) / period, "N·m/s"),
+        Metric("torque variation", variation, "N·m/s"),
         Metric("peak torque", float(peak), "N·m"),
     ]
     if log.channels[sent].shape == limits.shape:

@@ -3,7 +3,7 @@ than a short one."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -50,6 +50,27 @@ def largest(values: Iterable[Array | float]) -> Array:
     if found is None:
         raise _none()
     return found
+
+
+def of_steps(metric: Callable[[Array, float], float], parts: Iterable[tuple[Array, ...]], period: float) -> float:
+    """A metric that is a mean over the steps from sample to sample, of the steps of all parts.
+
+    Args:
+        metric: of samples (k, …) and their period, as `metrics.torque_variation` and `metrics.switch_rate`.
+        parts: one channel's, each with the sample before it.
+        period: s.
+
+    Raises:
+        ShapeError: there is no step.
+    """
+    total, steps = 0.0, 0
+    for (part,) in parts:
+        if len(part) > 1:
+            total += metric(part, period) * (len(part) - 1)
+            steps += len(part) - 1
+    if not steps:
+        raise _none()
+    return total / steps
 
 
 def _none() -> ShapeError:

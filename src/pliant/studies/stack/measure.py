@@ -40,9 +40,9 @@ def _torques(config: StackCaseConfig, robot: Robot, log: Log) -> list[Metric]:
     sent, limits, counts = "command/torque", robot.torque_limit, window(config, log)
     both = ([metrics.peak(part), metrics.torque_step_fraction(part, limits)] for (part,) in log.parts(sent, before=1))
     peak, step = in_parts.largest(map(np.array, both))
-    steps = in_parts.mean(np.abs(np.diff(part, axis=0)) for (part,) in log.parts(sent, where=counts, before=1))
+    variation = in_parts.of_steps(metrics.torque_variation, log.parts(sent, where=counts, before=1), config.period)
     return [
-        Metric("torque variation", float(np.mean(steps)) / config.period, "N·m/s"),
+        Metric("torque variation", variation, "N·m/s"),
         Metric("peak torque", float(peak), "N·m"),
         Metric("torque step", 100.0 * float(step), "% of limit"),
     ]
@@ -58,9 +58,9 @@ def _attractor(config: StackCaseConfig, log: Log) -> list[Metric]:
         return []
     counts = window(config, log)
     margin = -float(in_parts.largest(-np.min(part[:, :3]) for (part,) in log.parts("ee/storage_margin")))
-    switches = in_parts.mean(np.diff(part, axis=0) != 0.0 for (part,) in log.parts("ee/phase", where=counts, before=1))
+    switches = in_parts.of_steps(metrics.switch_rate, log.parts("ee/phase", where=counts, before=1), config.period)
     found = [
-        Metric("phase switches", float(np.mean(switches)) / config.period, "1/s per axis"),
+        Metric("phase switches", switches, "1/s per axis"),
         Metric("storage margin of translation", margin, "J", at_least=True),
     ]
     if config.retuning is not None:
