@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import pickle
+import sys
 from dataclasses import FrozenInstanceError, dataclass, field, fields, replace
 from typing import Any
 
@@ -71,6 +72,59 @@ def test_a_quick_value_is_that_of_the_standard_library(values: tuple[Any, ...], 
     with pytest.raises(FrozenInstanceError):
         ours.a = 5.0
     assert not hasattr(ours, "__dict__")
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [((), {}), ((1.0,), {"a": 2.0}), ((1.0,), {"f": 2.0}), ((1.0, 2.0, [], (), "x", 3.0), {}), ((), {"b": 1.0})],
+)
+def test_arguments_that_do_not_fit_are_refused_as_the_standard_library_does(
+    values: tuple[Any, ...], named: dict[str, Any]
+) -> None:
+    with pytest.raises(TypeError) as ours:
+        Quick(*values, **named)
+    with pytest.raises(TypeError) as theirs:
+        Plain(*values, **named)
+    assert str(ours.value) == str(theirs.value)
+
+
+class Checking:
+    a: float
+    kept: list[float] = field(default_factory=list[float])
+
+    def __post_init__(self) -> None:
+        if self.a < 0.0:
+            raise ValueError("below zero")
+        self.kept.append(self.a)
+
+
+def test_a_value_that_checks_its_fields_does_so() -> None:
+    made: Any = quick(Checking)
+    assert made(2.0).kept == [2.0]
+    with pytest.raises(ValueError, match="below zero"):
+        made(-1.0)
+
+
+def test_a_subclass_makes_its_own_values() -> None:
+    class More(Estimate):
+        def __init__(self) -> None:
+            super().__init__(1.0, *4 * [np.zeros(2)])
+
+    assert type(More()) is More
+    assert More().time == 1.0
+
+
+def test_a_value_keeps_and_gives_back_what_it_is_given() -> None:
+    """A count that is off by one leaks each value's arrays, or frees them while they are used."""
+    array, default = np.zeros(2), Estimate(1.0, *4 * [np.zeros(2)]).wrenches
+    before = sys.getrefcount(array), sys.getrefcount(default)
+    made = [Estimate(1.0, array, array, array, array) for _ in range(10)]
+    assert (sys.getrefcount(array), sys.getrefcount(default)) == (before[0] + 40, before[1] + 40)
+    del made
+    for _ in range(10):
+        with pytest.raises(TypeError):
+            Estimate(1.0, array, torque=array)  # type: ignore[call-arg]
+    assert (sys.getrefcount(array), sys.getrefcount(default)) == before
 
 
 def test_quick_values_share_no_default_that_can_change() -> None:
