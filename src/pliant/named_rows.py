@@ -1,33 +1,27 @@
-"""Values of one size that stand one after the other in an array, by name."""
+"""Values of one shape that stand one after the other in an array, by name."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 
-from pliant.spatial import Array
+from pliant._values import NamedViews
 
 
 class NamedRows:
-    """Where they stand. A slice for each, made once, takes a third of the time of an iteration over the array's rows.
+    """Where they stand.
 
     Args:
         names: of the values.
         begin: where the first one begins.
-        size: numbers of each.
+        shape: of each.
     """
 
-    __slots__ = ("_places", "end")
+    __slots__ = ("end", "of")
 
-    def __init__(self, names: Sequence[str], begin: int, size: int) -> None:
-        starts = [begin + i * size for i in range(len(names))]
-        self._places = tuple([(name, slice(at, at + size)) for name, at in zip(names, starts, strict=True)])
+    def __init__(self, names: Sequence[str], begin: int, *shape: int) -> None:
+        size = prod(shape)
+        self.of = NamedViews(names, [(begin + i * size, *shape) for i in range(len(names))]).of
+        """array → name → view of its numbers"""
         self.end = begin + len(names) * size
         """where the last one ends"""
-
-    def of(self, numbers: Array) -> dict[str, Array]:
-        """Name → its numbers (size,), a view."""
-        return {name: numbers[place] for name, place in self._places}
-
-    def matrices(self, numbers: Array) -> dict[str, Array]:
-        """Name → its nine numbers as a matrix (3, 3), a view."""
-        return {name: numbers[place].reshape(3, 3) for name, place in self._places}

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from pliant._estimation import Chain, Stage
+from pliant._values import Views
 from pliant.environment import Environment
 from pliant.errors import PliantError, SignalError
 from pliant.frozen import changed, quick
@@ -114,23 +115,22 @@ class ChainedEstimator(Estimator[ChainState]):
         return bound
 
     def _found(self, bound: _Bound, measurement: Measurement, out: Array) -> Estimate:
-        n = bound.n
+        q, v, torque, disturbance = bound.joints(out)
         return Estimate(
             measurement.time,
-            out[:n],
-            out[n : 2 * n],
-            out[2 * n : 3 * n],
+            q,
+            v,
+            torque,
             measurement.torque_sent,
             bound.wrenches(out),
             bound.contacts(out),
-            out[3 * n : 4 * n] if self._observes else None,
+            disturbance if self._observes else None,
             {} if self.environment is None else _environments(self.environment, out),
         )
 
     def _completing(self, bound: _Bound, given: Estimate, out: Array) -> Estimate:
         """Somebody else's estimate with what this chain writes."""
-        n = bound.n
-        written = {"q": out[:n], "v": out[n : 2 * n], "torque": out[2 * n : 3 * n], "disturbance": out[3 * n : 4 * n]}
+        written = dict(zip(("q", "v", "torque", "disturbance"), bound.joints(out), strict=True))
         fields: dict[str, Any] = {name: value for name, value in written.items() if name in self._writes}
         if "wrenches" in self._writes:
             fields["wrenches"] = bound.wrenches(out)
@@ -143,13 +143,12 @@ class _Bound:
     """A chain for one robot and its sensors, and where its estimates lie in a row of numbers."""
 
     def __init__(self, core: Chain, n: int) -> None:
-        self.core, self.n, self.size = core, n, core.belief_size
-        self._wrenches = NamedRows(core.frames, 4 * n, 6)
+        self.core, self.size = core, core.belief_size
+        self.joints = Views([(i * n, n) for i in range(4)]).of
+        """row → views of position, velocity, torque and disturbance of the joints, (n,) each"""
+        self.wrenches = NamedRows(core.frames, 4 * n, 6).of
+        """row → frame → wrench (6,)"""
         self._touches = tuple(enumerate(core.frames, start=4 * n + 6 * core.rows))
-
-    def wrenches(self, out: Array) -> dict[str, Array]:
-        """Frame → wrench (6,)."""
-        return self._wrenches.of(out)
 
     def contacts(self, out: Array) -> dict[str, bool]:
         """Frame → whether it touches."""

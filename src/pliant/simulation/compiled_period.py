@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from pliant._plant import Physics
+from pliant._values import Views
 from pliant.named_rows import NamedRows
 from pliant.simulation.contact.explicit import ExplicitContacts
 from pliant.simulation.disturbances import Push
@@ -81,8 +82,11 @@ class CompiledPeriod:
         self.n = len(limit)
         self.size = self.core.outcome_size
         """numbers of a period's outcome"""
+        self.joints = Views([(0, self.n), (self.n, self.n)]).of
+        """a period's outcome → views of the joints' positions and velocities, (n,) each"""
         self._wrenches = NamedRows(self.contacts, 3 * self.n, 6)
-        self._readings = NamedRows(self.sensors, self._wrenches.end, 6)
+        self.readings = NamedRows(self.sensors, self._wrenches.end, 6).of
+        """a period's outcome → frame of each sensor → what it reads (6,)"""
         self._touching: dict[int, frozenset[str]] = {}
 
     def step(self, world: World, torque: Array) -> tuple[Array, int]:
@@ -113,10 +117,6 @@ class CompiledPeriod:
             touching = frozenset(frame for bit, frame in enumerate(self.contacts) if mask >> bit & 1)
             self._touching[mask] = touching
         world.touching = touching
-
-    def readings(self, out: Array) -> dict[str, Array]:
-        """Frame of each sensor → what it reads (6,), out of a period's outcome."""
-        return self._readings.of(out)
 
     def rows(self, pushes: Iterable[Push]) -> list[PushRow]:
         """Pushes in the format of the compiled code."""

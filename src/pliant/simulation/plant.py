@@ -134,8 +134,8 @@ class MujocoPlant(Plant[World]):
         if self.compiled is not None:
             out, touching = self.compiled.step(world, command.torque)
             time = self.passed(world, 1, out, touching)
-            n, torque = self.robot.n, world.torque
-            return Measurement(time, out[:n], out[n : 2 * n], torque, torque, self.compiled.readings(out)), world
+            q, v = self.compiled.joints(out)
+            return Measurement(time, q, v, world.torque, world.torque, self.compiled.readings(out)), world
         world.torque = clamp(command.torque, -self._limit, self._limit)
         self._loop.step(world)
         world.ticks += 1

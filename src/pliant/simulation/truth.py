@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from pliant._plant import TruthRow
+from pliant._values import Views
 from pliant.named_rows import NamedRows
 from pliant.signals import Truth
 from pliant.simulation.mujoco_library import can_look_inside
@@ -37,33 +38,27 @@ class TruthReader:
         self._lower, self._upper = lower, upper
         self._site_ids, self._body_ids = (np.array([*ids.values()], np.intp) for ids in (sites, bodies))
         n = self._n = len(lower)
+        self._joints = Views([(i * n, n) for i in range(4)])
         self._positions = NamedRows(tuple(sites), 4 * n, 3)
-        self._rotations = NamedRows(tuple(sites), self._positions.end, 9)
+        self._rotations = NamedRows(tuple(sites), self._positions.end, 3, 3)
         self._poses = NamedRows(tuple(bodies), self._rotations.end, 7)
         self.row = self.in_python
         """data → numbers of its truth: q, v, torque, excess; positions, rotations, poses"""
         if can_look_inside():
-            self._row = TruthRow(model, lower.tolist(), upper.tolist(), [*sites.values()], [*bodies.values()])
+            self._compiled_row = TruthRow(model, lower.tolist(), upper.tolist(), [*sites.values()], [*bodies.values()])
+            self._size = self._compiled_row.size
             self.row = self._compiled
 
     def truth(self, world: World, time: float) -> Truth:
         """The truth of a world at a time in s."""
-        n, row = self._n, self.row(world.data)
-        return Truth(
-            time,
-            row[:n],
-            row[n : 2 * n],
-            row[2 * n : 3 * n],
-            self._positions.of(row),
-            self._rotations.matrices(row),
-            dict(world.wrenches),
-            self._poses.of(row),
-            row[3 * n : 4 * n],
-        )
+        row = self.row(world.data)
+        q, v, torque, excess = self._joints.of(row)
+        positions, rotations, poses = self._positions.of(row), self._rotations.of(row), self._poses.of(row)
+        return Truth(time, q, v, torque, positions, rotations, dict(world.wrenches), poses, excess)
 
     def _compiled(self, data: mujoco.MjData) -> Array:
-        row = np.empty(self._row.size)
-        self._row.read(data, row)
+        row = np.empty(self._size)
+        self._compiled_row.read(data, row)
         return row
 
     def in_python(self, data: mujoco.MjData) -> Array:

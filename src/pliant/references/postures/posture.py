@@ -82,8 +82,10 @@ class PosturePath:
 
     def inside(self, time: float) -> float:
         """The time (s) of the sampled path at which it is as at `time`."""
+        if not self.repeats:
+            return time
         end = float(self.times[-1]) - _EDGE * float(self.times[1] - self.times[0])
-        if not self.repeats or time <= end:
+        if time <= end:
             return time
         return end - self.repeats + (time - end) % self.repeats
 

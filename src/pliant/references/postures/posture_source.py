@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from pliant._values import Views
 from pliant.interfaces import ReferenceSource
 from pliant.references.postures.posture import PostureOptions, PosturePath, solve_posture
 from pliant.references.source import FrameMotion, Started
@@ -53,6 +54,10 @@ def posture_source(
     return PostureSource(motion, path, dict(zip(secondary, positions, strict=True)), tunings or {})
 
 
+Parts = Callable[[Array], tuple[Array, ...]]
+"""row of numbers → views of its parts"""
+
+
 @dataclass(slots=True, frozen=True)
 class _Task:
     """Constant data of a task."""
@@ -60,10 +65,8 @@ class _Task:
     frame: str
     rotation: Array | None
     tuning: ImpedanceTuning | None
-    place: slice
-    """columns of its position in the spline"""
-    twist: slice
-    """its six columns: position and zeros, or their rates"""
+    parts: Parts
+    """position (3,), twist and its rate (6,)"""
 
 
 class PostureSource(ReferenceSource[Started]):
@@ -92,12 +95,12 @@ class PostureSource(ReferenceSource[Started]):
         R = motion.rotation
         self._turning = R if isinstance(R, Turning) and not isinstance(R, Fixed) else None
         fixed = R.at(0.0).rotation if isinstance(R, Fixed) else None
-        self._tool = _Task(motion.frame, fixed, motion.tuning, slice(0, 3), slice(0, 6))
+        width = self._spline.size
+        self._tool = _Task(motion.frame, fixed, motion.tuning, _parts_of(0, width))
         self._others = [
-            _Task(frame, None, tunings.get(frame), slice(6 * i, 6 * i + 3), slice(6 * i, 6 * i + 6))
-            for i, frame in enumerate(secondary, start=1)
+            _Task(frame, None, tunings.get(frame), _parts_of(i, width)) for i, frame in enumerate(secondary, start=1)
         ]
-        self._posture = slice(6 * len(blocks), None)
+        self._posture = Views([(6 * len(blocks), len(self.start))]).of
         self._no_wrench = vector(np.zeros(6), "no wrench")
 
     def init(self, estimate: Estimate) -> Started:
@@ -109,35 +112,29 @@ class PostureSource(ReferenceSource[Started]):
     def at(self, time: float, elapsed: float) -> Reference:
         """The reference at `time` of the loop's clock, `elapsed` s after the start."""
         inside = self.path.inside(elapsed)
-        value, rate, acceleration = self._spline.at(inside)
-        tasks = [self._tool_task(elapsed, inside, value, rate, acceleration)]
+        row = self._spline.row(inside)
+        tasks = [self._tool_task(elapsed, inside, row)]
         for task in self._others:
-            tasks.append(
-                TaskReference(
-                    task.frame,
-                    value[task.place],
-                    None,
-                    rate[task.twist],
-                    acceleration[task.twist],
-                    self._no_wrench,
-                    task.tuning,
-                )
-            )
-        return Reference(time, tuple(tasks), value[self._posture])
+            position, rate, change = task.parts(row)
+            tasks.append(TaskReference(task.frame, position, None, rate, change, self._no_wrench, task.tuning))
+        (posture,) = self._posture(row)
+        return Reference(time, tuple(tasks), posture)
 
-    def _tool_task(
-        self, elapsed: float, inside: float, value: Array, rate: Array, acceleration: Array
-    ) -> TaskReference:
-        rotation, velocity, change = self._tool.rotation, rate[self._tool.twist], acceleration[self._tool.twist]
+    def _tool_task(self, elapsed: float, inside: float, row: Array) -> TaskReference:
+        tool, rotation = self._tool, self._tool.rotation
+        position, velocity, change = tool.parts(row)
         if self._turning is not None and inside <= self.path.times[-1]:
-            velocity, change = velocity.copy(), change.copy()
             rotation, velocity[3:], change[3:] = self._turning.at(inside)
         elif self._turning is not None:
             rotation = self._turning.at(float(self.path.times[-1])).rotation
         wrench = self._no_wrench if self.motion.wrench is None else self.motion.wrench.at(elapsed).value
-        return TaskReference(
-            self._tool.frame, value[self._tool.place], rotation, velocity, change, wrench, self._tool.tuning
-        )
+        return TaskReference(tool.frame, position, rotation, velocity, change, wrench, tool.tuning)
+
+
+def _parts_of(place: int, width: int) -> Parts:
+    """Parts of a row of the spline. Args: place: of a task. width: columns of value, rate and acceleration."""
+    begin = 6 * place
+    return Views([(begin, 3), (width + begin, 6), (2 * width + begin, 6)]).of
 
 
 def _frame_path(robot: Robot, path: PosturePath, frame: str) -> Array:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import bisect
-
 import numpy as np
 
+from pliant._references import Spline as CompiledSpline
+from pliant._values import Views
 from pliant.references.trajectories.trajectory import Point, Trajectory
 from pliant.spatial import Array
 
@@ -29,10 +29,8 @@ class Spline(Trajectory):
         c_2 = (3.0 * chord - 2.0 * slopes[:-1] - slopes[1:]) / h
         c_3 = (slopes[:-1] + slopes[1:] - 2.0 * chord) / h**2
         self._table = _with_derivatives(values[:-1], slopes[:-1], c_2, c_3)
-        self._pieces = list(self._table)
         self._starts = np.array(times, dtype=np.float64)
-        self._last_piece = len(self._pieces) - 1
-        self._times: list[float] = times.tolist()
+        self._last_piece = len(self._table) - 1
         steps = np.diff(times)
         self._step = float(steps[0]) if np.allclose(steps, steps[0], rtol=1e-9, atol=0.0) else 0.0
         self.size, self.duration = int(values.shape[1]), float(times[-1])
@@ -41,20 +39,18 @@ class Spline(Trajectory):
         zero = np.zeros(k)
         self._first = Point(values[0].copy(), zero, zero)
         self._last = Point(values[-1].copy(), zero, zero)
+        ends = [np.concatenate(end).tolist() for end in (self._first, self._last)]
+        self._core = CompiledSpline(self._starts.tolist(), self._step, self._table, *ends)
+        self._parts = Views([(0, k), (k, k), (2 * k, k)]).of
 
     def at(self, time: float) -> Point:
-        times = self._times
-        if time > times[-1]:
-            return self._last
-        if time < times[0]:
-            return self._first
-        if self._step > 0.0:
-            index = min(int((time - times[0]) / self._step), self._last_piece)
-        else:
-            index = min(bisect.bisect_right(times, time) - 1, self._last_piece)
-        t = time - times[index]
-        row = np.array((1.0, t, t * t, t * t * t)).dot(self._pieces[index])  # (4,) @ (4, 3k)
-        return Point(row[self._value], row[self._rate], row[self._acceleration])
+        return Point(*self._parts(self.row(time)))
+
+    def row(self, time: float) -> Array:
+        """Value, rate and acceleration (3k,) at a time in s, side by side."""
+        row = np.empty(3 * self.size)
+        self._core.at(time, row)
+        return row
 
     def rows(self, times: Array) -> Point:
         starts = self._starts

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pliant._values import Views
 from pliant.errors import ConfigError
 from pliant.interfaces import Compensation, Plant
 from pliant.named_rows import NamedRows
@@ -131,6 +132,7 @@ class ImperfectPlant(Plant[ImperfectWorld]):
     def _build(self, n: int, sensors: tuple[str, ...]) -> None:
         """What depends on the number of joints and sensors, which the plant tells by its first measurement."""
         self._sizes = Sizes(n, sensors, self._ticks, self._inner_steps, self.inner.period)
+        self._joints = Views([(i * n, n) for i in range(4)])
         self._felt = NamedRows(sensors, 4 * n, 6)
         self._chain = chain_of(self.config, self._sizes)
         self._period = compiled_period_of(self.inner)
@@ -165,8 +167,8 @@ class ImperfectPlant(Plant[ImperfectWorld]):
         return np.concatenate([true.q, true.v, true.torque, *felt])
 
     def _reading(self, time: float, out: Array) -> Measurement:
-        n, wrenches = self._sizes.n, self._felt.of(out)
-        return Measurement(time, out[:n], out[n : 2 * n], out[2 * n : 3 * n], out[3 * n : 4 * n], wrenches)
+        q, v, torque, sent = self._joints.of(out)
+        return Measurement(time, q, v, torque, sent, self._felt.of(out))
 
 
 def _check_damping(inner: Plant[Any], wanted: float) -> None:
