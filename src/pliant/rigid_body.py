@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pinocchio as pin
 
@@ -11,8 +13,14 @@ from pliant.spatial import Array
 
 def mass_matrix(model: pin.Model, data: pin.Data, q: Array) -> Array:
     """M(q) (n, n), rotor inertia included, kg m² (kg for prismatic joints). Both triangles are filled."""
-    upper = np.triu(np.asarray(pin.crba(model, data, q)))  # pinocchio does not fill the lower one reliably
-    return upper + np.triu(upper, 1).T
+    M = np.asarray(pin.crba(model, data, q))
+    return np.where(_below(len(M)), M.T, M)  # pinocchio does not fill the lower one reliably
+
+
+@cache
+def _below(n: int) -> Array:
+    """(n, n) bool: what lies below the diagonal. Made once: `np.triu` makes it anew, which took longer than M."""
+    return np.tri(n, k=-1, dtype=bool)
 
 
 def joint_motions(model: pin.Model) -> list[Array]:
