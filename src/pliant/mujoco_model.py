@@ -128,8 +128,8 @@ def _add_shape(spec: mujoco.MjSpec, body: mujoco.MjsBody, shape: pin.GeometryObj
 
 def _add_mesh(spec: mujoco.MjSpec, body: mujoco.MjsBody, shape: pin.GeometryObject, name: str) -> None:
     vertices = np.array(shape.geometry.vertices()) * np.array(shape.meshScale)
-    triangles = [shape.geometry.tri_indices(i) for i in range(shape.geometry.num_tris)]
-    faces = np.array([[int(t[0]), int(t[1]), int(t[2])] for t in triangles])
+    triangles = map(shape.geometry.tri_indices, range(shape.geometry.num_tris))
+    faces = np.array([(t[0], t[1], t[2]) for t in triangles], dtype=np.int32)
     if len(vertices) < 4 or len(faces) < 4:
         return
     mesh = spec.add_mesh(name=name, uservert=vertices.ravel(), userface=faces.ravel())

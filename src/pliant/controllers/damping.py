@@ -58,47 +58,60 @@ class Damping:
         if self.motion_damping:
             M = mass_matrix(model, data, q)
             axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-            jacobians = [np.array(pin.computeFrameJacobian(model, data, q, frame, axes)) for frame, _ in frames]
-            against = _self_motion(M, np.vstack(jacobians), v)
-            for J, (_, task) in zip(jacobians, frames, strict=True):
-                against = against + _beside_reference(M, J, v, task)
+            J = np.vstack([pin.computeFrameJacobian(model, data, q, frame, axes) for frame, _ in frames])
+            against = J.T @ _wrench(M, J, v, [task for _, task in frames]) - M @ v
             found = found + self.motion_damping * against
         return found
 
 
-def _self_motion(M: Array, J: Array, v: Array) -> Array:
-    """(n,) −(M − Jᵀ Λ J) v, N·m·s: against what the joints do while no frame moves, Λ as below.
+def _wrench(M: Array, J: Array, v: Array, tasks: Sequence[TaskReference]) -> Array:
+    """(6 f,) N·s and N·m·s, world axes, of two dampings: Λ J v of self-motion, and Λ (ẋ_d − J v) of each frame.
 
-    An arm with more joints than its frames have axes drifts where the model's gravity errs: a Panda of twice the mass
-    turned joint 2 by 1.3 rad within 6 s, to where joints 1 and 3 are in line, and ran away there.
+    Jᵀ Λ J v − M v is against what the joints do while no frame moves. An arm with more joints than its frames have axes
+    drifts where the model's gravity errs: a Panda of twice the mass turned joint 2 by 1.3 rad within 6 s, to where
+    joints 1 and 3 are in line, and ran away there.
+
+    Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹ is the inertia of the frames (Khatib 1987, "A unified approach for motion and force control
+    of robot manipulators", eq. 14), δ as in operational-space control. Of one frame whose axes are all held it is the
+    same in both, and Λ ẋ_d is their sum.
 
     Args:
         M: (n, n).
         J: (6 f, n) of f frames, world axes.
         v: (n,) rad/s.
+        tasks: of the frames.
     """
-    mobility = J @ np.linalg.solve(M, J.T) + _NEAR_SINGULAR * np.eye(len(J))
-    return J.T @ np.linalg.solve(mobility, J @ v) - M @ v
+    mobility = J @ np.linalg.solve(M, J.T)
+    mobility.flat[:: len(J) + 1] += _NEAR_SINGULAR
+    if len(tasks) == 1 and _holds_all(tasks[0]):
+        return np.asarray(np.linalg.solve(mobility, tasks[0].velocity), dtype=np.float64)
+    twist = J @ v
+    found = np.asarray(np.linalg.solve(mobility, twist), dtype=np.float64)
+    for index, task in enumerate(tasks):
+        own = slice(6 * index, 6 * index + 6)
+        found[own] += _beside_reference(mobility[own, own], twist[own], task)
+    return found
 
 
-def _beside_reference(M: Array, J: Array, v: Array, task: TaskReference) -> Array:
-    """(n,) Jᵀ Λ (ẋ_d − J v), N·m·s: multiplied by a rate in 1/s, the rate at which that difference decays.
+def _holds_all(task: TaskReference) -> bool:
+    return task.rotation is not None and (task.modes is None or "free" not in task.modes.modes)
 
-    Λ = (J M⁻¹ Jᵀ + δ² I)⁻¹ is the inertia of the frame (Khatib 1987, "A unified approach for motion and force control
-    of robot manipulators", eq. 14), δ as in operational-space control. It takes power from the difference, whatever
-    the posture. Rotations count where the reference has one; axes whose mode is "free" are left out.
+
+def _beside_reference(mobility: Array, twist: Array, task: TaskReference) -> Array:
+    """(6,) Λ (ẋ_d − J v), N·s and N·m·s: multiplied by a rate in 1/s, the rate at which that difference decays.
+
+    It takes power from the difference, whatever the posture. Rotations count where the reference has one; axes whose
+    mode is "free" are left out.
 
     Args:
-        M: (n, n).
-        J: (6, n) of the frame, world axes.
-        v: (n,) rad/s.
+        mobility: (6, 6) Λ⁻¹ of the frame, world axes.
+        twist: (6,) J v.
         task: of the frame.
     """
-    rows = 3 if task.rotation is None else 6
-    motion, wanted = J[:rows], task.velocity[:rows]
+    rows = np.eye(6)
     if task.modes is not None:
-        kept, R = ~np.array(task.modes.having("free")[:rows]), task.modes.rotation.T
-        motion = np.vstack([R @ J[:3], R @ J[3:]])[:rows][kept]
-        wanted = task.modes.into(task.velocity)[:rows][kept]
-    mobility = motion @ np.linalg.solve(M, motion.T) + _NEAR_SINGULAR * np.eye(len(motion))
-    return motion.T @ np.linalg.solve(mobility, wanted - motion @ v)
+        rows[:3, :3] = rows[3:, 3:] = task.modes.rotation.T
+        rows = rows[~np.array(task.modes.having("free"))]
+    if task.rotation is None:
+        rows = rows[~rows[:, 3:].any(axis=1)]
+    return rows.T @ np.linalg.solve(rows @ mobility @ rows.T, rows @ (task.velocity - twist))

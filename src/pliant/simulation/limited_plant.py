@@ -43,7 +43,8 @@ class RunLimits:
 
     def outside(self, place: Array) -> bool:
         """Whether a place (3,) m is out of the workspace."""
-        return bool((place < self.lower).any() or (place > self.upper).any())
+        inside = [low <= x <= high for low, x, high in zip(self.lower, place.tolist(), self.upper, strict=True)]
+        return not all(inside)
 
     def broken(self, truth: Truth, before: Array | None, period: float, torque_limit: Array) -> str:
         """The limit that is exceeded, with the value, in a few words; empty: none. Args: before: (3,) m, place a period
