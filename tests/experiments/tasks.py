@@ -31,3 +31,11 @@ def odd(task: str) -> object:
 def nap(task: float) -> float:
     time.sleep(task)
     return task
+
+
+known = ["what the module says"]
+"""what a fork has as its parent left it, and a process that imports the module anew as it stands here"""
+
+
+def recall(_task: int) -> str:
+    return known[-1]

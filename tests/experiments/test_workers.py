@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -47,6 +50,43 @@ def test_processes_that_cannot_start_are_a_sentence(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(workers, "_serve", sys.exit)  # ends before it says that it is there
     with open_pool(2) as pool, pytest.raises(RunFailedError, match="no process for the runs can be started"):
         dict(pool(work, [1]))
+
+
+SCRIPT = """
+    import sys, threading, types
+    from pliant.experiments.open_pool import open_pool
+    from pliant.experiments.workers import start_method
+    from tests.experiments import tasks
+
+    def answers():
+        with open_pool(2) as pool:
+            print(start_method(), sorted({answer for _, answer in pool(tasks.recall, range(4))}))
+
+    if __name__ == "__main__":
+        tasks.known.append("worked out before")
+        answers()
+        end = threading.Event()
+        other = threading.Thread(target=end.wait)
+        other.start()
+        answers()
+        end.set()
+        other.join()
+        answers()
+        sys.modules["torch"] = types.ModuleType("torch")
+        answers()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere processes are spawned")
+def test_processes_are_forks_that_know_what_was_worked_out_only_where_that_is_safe(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(textwrap.dedent(SCRIPT))
+    command = [sys.executable, "-W", "error", str(script)]
+    root = str(Path(__file__).parents[2])
+    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": root}, check=False)
+    assert done.returncode == 0, done.stderr
+    forked, spawned = "fork ['worked out before']", "spawn ['what the module says']"
+    assert done.stdout.splitlines() == [forked, spawned, forked, spawned]
 
 
 @pytest.mark.parametrize("jobs", [0, -1, 10**23])

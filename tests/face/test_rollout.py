@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
@@ -36,6 +39,22 @@ def test_the_number_of_processes_changes_nothing(alone: pliant.Rollout) -> None:
     together = pliant.rollout("haptic", case="floor-noise", seeds=2, changes=CHANGES, jobs=2)
     assert [numbers(run.metrics) for run in together.runs] == [numbers(run.metrics) for run in alone.runs]
     assert [run.config for run in together.runs] == [run.config for run in alone.runs]
+
+
+ALONE = """
+import json, pliant
+from pliant.experiments.workers import start_method
+many = pliant.rollout("haptic", case="floor-noise", seeds=2, changes=CHANGES, jobs=2)
+print(start_method(), json.dumps([{m.name: m.value.hex() for m in run.metrics} for run in many.runs]))
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere processes are spawned")
+def test_a_fork_that_has_what_was_worked_out_before_changes_nothing(alone: pliant.Rollout) -> None:
+    command = [sys.executable, "-c", ALONE.replace("CHANGES", repr(CHANGES))]
+    method, _, forked = subprocess.run(command, capture_output=True, text=True, check=True).stdout.partition(" ")
+    assert method == "fork"  # baseline: within pytest's processes the other tests spawn
+    assert json.loads(forked) == [{m.name: float(m.value).hex() for m in run.metrics} for run in alone.runs]
 
 
 def test_values_and_rows_stand_where_they_should(alone: pliant.Rollout) -> None:

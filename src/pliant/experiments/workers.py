@@ -3,6 +3,9 @@ affected.
 
 `concurrent.futures` abandons all tasks when one process dies; here each process has a pipe of its own, so that it is
 known which task it had.
+
+Where it is safe, processes are forks: they start at once, and have what this process has imported and worked out, the
+postures of a reference for example. Elsewhere they are spawned: each imports and works out for itself.
 """
 
 from __future__ import annotations
@@ -11,13 +14,14 @@ import multiprocessing as mp
 import os
 import pickle
 import signal
+import sys
 import threading
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from pliant.errors import RunFailedError
 from pliant.experiments.pool import Lost, Pool
@@ -27,11 +31,21 @@ R = TypeVar("R")
 DEATHS = 3
 """how often the process of a task may die before the task counts as lost"""
 _LOOK = 0.2  # s between two looks for Ctrl-C
+_OWN_THREADS = ("cupy", "jax", "tensorflow", "torch")
+"""libraries that do not work in a fork of a process in which they have started"""
+
+
+def start_method() -> Literal["fork", "spawn"]:
+    """How a process is started now: fork on Linux, where this process runs no other Python thread (which may hold a
+    lock that would stay locked in the fork) and no library that cannot be forked."""
+    threads = len(sys._current_frames())  # pyright: ignore[reportPrivateUsage] (`threading` lists its own alone)
+    alone = threads == 1 and threading.current_thread() is threading.main_thread()
+    return "fork" if sys.platform == "linux" and alone and sys.modules.keys().isdisjoint(_OWN_THREADS) else "spawn"
 
 
 @contextmanager
 def local_workers(jobs: int, interrupted: threading.Event) -> Generator[Pool]:
-    """A pool of processes, which are started when there is work for them and end with it.
+    """A pool of processes, as many as there are cores at once, others when there is work for them; all end with it.
 
     Args:
         jobs: how many processes.
@@ -49,6 +63,7 @@ class _Crew:
         self._jobs, self._interrupted = jobs, interrupted
         self._workers: dict[Connection, _Worker] = {}
         self._stillborn = 0  # consecutive processes that died without a task
+        self._start(min(jobs, os.cpu_count() or 1))  # before a progress bar has a thread
 
     def __call__(self, function: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R | Lost]]:
         """Raises RunFailedError if no process can be started, KeyboardInterrupt after Ctrl-C."""
@@ -83,13 +98,16 @@ class _Crew:
             self._bury(worker)
 
     def _employ(self, waiting: deque[int], function: Callable[[T], R], tasks: Sequence[T], left: int) -> None:
-        while len(self._workers) < min(self._jobs, left):
-            worker = _Worker()
-            self._workers[worker.pipe] = worker
+        self._start(min(self._jobs, left))
         for worker in self._workers.values():
             if waiting and worker.ready and worker.task is None and not self._interrupted.is_set():
                 index = waiting.popleft()
                 worker.give(index, pickle.dumps((function, tasks[index])))
+
+    def _start(self, wanted: int) -> None:
+        while len(self._workers) < wanted:
+            worker = _Worker(list(self._workers))
+            self._workers[worker.pipe] = worker
 
     def _listen(self) -> list[_Worker]:
         """The processes that have sent something or died. Ctrl-C takes effect after all finished tasks have been
@@ -133,12 +151,15 @@ class _Answer:
 class _Worker:
     """A process, the pipe to it, and the task that it has."""
 
-    def __init__(self) -> None:
-        context = mp.get_context("spawn")  # no copy of this process's threads and locks
+    def __init__(self, others: Sequence[Connection]) -> None:
+        """Args: others: this process's ends of the pipes to other processes."""
+        method = start_method()
+        context = mp.get_context("fork") if method == "fork" else mp.get_context("spawn")
         self.pipe, theirs = context.Pipe()
         self.task: int | None = None
         self.ready = False
-        self._process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        inherited = (self.pipe, *others) if method == "fork" else ()
+        self._process = context.Process(target=_serve, args=(theirs, *inherited), daemon=True)
         with _shielded():
             self._process.start()
         theirs.close()  # its end is now the only one: the pipe ends with the process
@@ -168,8 +189,10 @@ class _Worker:
         return signal.Signals(-code).name if code is not None and code < 0 else f"exit code {code}"
 
 
-def _serve(pipe: Connection) -> None:
-    """Main function of a process: runs tasks until its pipe is closed."""
+def _serve(pipe: Connection, *inherited: Connection) -> None:
+    """Main function of a process: runs tasks until its pipe is closed. Args: inherited: ends that a fork has, too."""
+    for end in inherited:
+        end.close()
     # a terminal sends it to all processes; the command ends its processes itself
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_die_with_parent, daemon=True).start()
@@ -194,7 +217,7 @@ def _die_with_parent() -> None:
 
 @contextmanager
 def _shielded() -> Generator[None]:
-    """Processes started in here never see Ctrl-C, and compute on one thread each."""
+    """Processes started in here never see Ctrl-C, and spawned ones compute on one thread each."""
     resource_tracker.ensure_running()  # the process would unblock the signal
     threads = os.environ.get("OMP_NUM_THREADS")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
