@@ -1,9 +1,13 @@
-"""Typed face of the rows of a log (cpp/telemetry).
+"""Typed face of the rows of a log (cpp/telemetry): a tick as numbers, a block of ticks as bytes of messages.
 
 A path leads from a tick to a value: the name of an attribute, the number of an item, a tuple of the key of a mapping.
 """
 
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from pliant.spatial import Array
 
@@ -50,3 +54,24 @@ class Row:
         Raises:
             ValueError: there is no such row.
         """
+
+def pack(
+    template: bytes,
+    records: Sequence[tuple[int, int, int]],
+    columns: Sequence[tuple[Array, Sequence[int]]],
+    times: npt.NDArray[np.int64],
+    out: npt.NDArray[np.uint8],
+) -> None:
+    """Writes the message records of a block of ticks, a row of bytes per tick.
+
+    Args:
+        template: a row (width,) without its numbers.
+        records: of each message where it begins in a row, the number of the first one, where its stamp begins (-1: it
+            has none).
+        columns: (n, k) numbers of a channel, and the byte of a row at which each of them goes.
+        times: (n,) ns.
+        out: (n, width).
+
+    Raises:
+        ValueError: sizes that do not fit, or a place beyond a row.
+    """

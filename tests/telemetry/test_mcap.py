@@ -17,7 +17,6 @@ from rosbags.highlevel import AnyReader
 from pliant.signals import Tick
 from pliant.telemetry import Log, Recorder, RunInfo
 from pliant.telemetry.mcap.messages import DEFINITIONS, encode, message, template
-from pliant.telemetry.mcap.packing import put_numbers
 from tests.telemetry.ticks import JOINTS, make_tick
 
 TICKS = 700  # more than one block
@@ -180,15 +179,3 @@ def test_a_damaged_block_gives_nothing_instead_of_nonsense(path: Path, ticks: li
     n = log["measurement/q"].shape[0]
     assert 0 < n < TICKS
     np.testing.assert_array_equal(log["measurement/q"], [tick.measurement.q for tick in ticks[:n]])
-
-
-@pytest.mark.parametrize("offsets", [[0, 8], [0, 16], [0, 24], [8, 24, 40]])
-def test_numbers_are_put_where_they_belong_neighbours_or_not(offsets: list[int]) -> None:
-    values = np.arange(2.0 * len(offsets)).reshape(2, -1) + 1.0
-    rows = np.zeros((2, 64), dtype=np.uint8)
-    assert put_numbers(rows, 4, offsets, values) == len(offsets)
-    for column, offset in enumerate(offsets):
-        found = np.ascontiguousarray(rows[:, 4 + offset : 12 + offset]).view("<f8")[:, 0]
-        np.testing.assert_array_equal(found, values[:, column])
-        rows[:, 4 + offset : 12 + offset] = 0
-    assert not rows.any()  # and nowhere else

@@ -34,7 +34,17 @@ _OPTIONAL = {
     "distributed": "sweeps on a cluster: pip install 'pliant[cluster]'",
     "mim-solvers": "second solver for predictive controllers: pip install 'pliant[crocoddyl]'",
 }
-_COMPILED = ("_impedance", "_contact", "_estimation", "_guard", "_plant", "_references", "_values", "_mpc")
+_COMPILED = (
+    "_impedance",
+    "_contact",
+    "_estimation",
+    "_guard",
+    "_plant",
+    "_references",
+    "_telemetry",
+    "_values",
+    "_mpc",
+)
 
 
 def doctor_command(console: Console, config: Path | None) -> None:

@@ -58,6 +58,7 @@ def run_case(
         run_info(study, config, wired),
         channels=wired.channels,
         scene=drawn_scene(wired) if folder is not None and config.log_scene else None,
+        kept=True,
     )
     ticks = round(run_length(config, wired) / wired.plant.period)
     notes = StartNotes()

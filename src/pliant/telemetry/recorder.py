@@ -48,6 +48,7 @@ class Recorder:
         channels: Sequence[Channel] = (),
         decimation: int = 1,
         scene: DrawnScene | None = None,
+        kept: bool = False,
     ) -> None:
         """Opens the file.
 
@@ -57,6 +58,7 @@ class Recorder:
             channels: units of diagnostics; a name may be a pattern, the first that fits counts.
             decimation: records every so many ticks, beginning with the first.
             scene: adds frames and shapes for 3-D views, at 30 Hz and beside the loop; None: without.
+            kept: keeps a log of up to 64 MB in memory, too, so that `log` need not read the file.
 
         Raises:
             OutputError: the file cannot be opened.
@@ -74,7 +76,7 @@ class Recorder:
         self._seen = 0
         self.timing = Timing()
         self._units: dict[str, str] = {}
-        self._file = McapFile(self._stream)
+        self._file = McapFile(self._stream, kept)
         self._scene = None if scene is None else SceneTopics(scene, self._file)
         self._file.add_metadata("pliant", metadata)
         self._phase = ""
@@ -113,6 +115,8 @@ class Recorder:
             OutputError: the file cannot be read, or the target was a stream of the caller.
         """
         self.close()
+        if (contents := self._file.contents()) is not None:
+            return Log("the log's stream" if self.path is None else str(self.path), contents)
         if self.path is not None:
             return Log.open(self.path)
         if not isinstance(self._stream, io.BytesIO):

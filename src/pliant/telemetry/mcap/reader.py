@@ -121,9 +121,7 @@ def _take(found: Contents, chunk: StoredChunk, packed: bytes) -> None:
     for opcode, start, end in _records(data, 0):
         if opcode == Opcode.MESSAGE:
             rows = _rows(data, start - _RECORD.size) if first else []
-            _add(
-                found, chunk, tuple(rows) or ((_channel(data, start), Place(start, 0, 1, end - start - MESSAGE.size)),)
-            )
+            add(found, chunk, tuple(rows) or ((_channel(data, start), Place(start, 0, 1, end - start - MESSAGE.size)),))
             if rows:
                 return
             first = False
@@ -135,7 +133,7 @@ def _take(found: Contents, chunk: StoredChunk, packed: bytes) -> None:
             found.schemas[schema.id] = schema
 
 
-def _add(found: Contents, chunk: StoredChunk, rows: tuple[tuple[int, Place], ...]) -> None:
+def add(found: Contents, chunk: StoredChunk, rows: tuple[tuple[int, Place], ...]) -> None:
     """Adds messages of a chunk: to the pieces before, where those are of the same rows, so that a long log has few."""
     chunks = found.alike.get(rows)
     if chunks is not None and all(found.pieces[channel][-1].chunks is chunks for channel, _ in rows):

@@ -36,13 +36,15 @@ from mcap.records import (
 
 from pliant.spatial import Array
 from pliant.telemetry.mcap.messages import DEFINITIONS, encode
-from pliant.telemetry.mcap.packing import put_numbers, put_values, record_bytes
+from pliant.telemetry.mcap.packing import record_bytes
+from pliant.telemetry.mcap.pieces import Place
+from pliant.telemetry.mcap.reader import Contents
+from pliant.telemetry.mcap.rows import ENVELOPE, INDEX, MESSAGE, RECORD, RowPlan, index_records
 from pliant.telemetry.mcap.scene_messages import SCENE_DEFINITIONS
 from pliant.telemetry.mcap.topics import Topic
+from pliant.telemetry.mcap.written import Written
 
 _MAGIC = b"\x89MCAP0\r\n"
-_MESSAGE = struct.Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
-_ENVELOPE = 22  # bytes of a message record before its data, counted by its length field
 _ZSTD_LEVEL = 1  # numbers with noise hardly compress: speed counts
 _DEFINITIONS = {**DEFINITIONS, **SCENE_DEFINITIONS}
 _LIBRARY = f"pliant with mcap {mcap.__version__}, mcap-ros2-support {mcap_ros2.__version__}"
@@ -54,15 +56,18 @@ class _OpenChunk:
 
     head: RecordBuilder = field(default_factory=RecordBuilder)
     """schema and channel records that it introduces"""
-    index: dict[int, npt.NDArray[np.uint64]] = field(default_factory=dict)
-    """channel → (n, 2) log time and offset in the chunk"""
 
 
 class McapFile:
     """An MCAP file that grows by blocks. Not for use by several threads at once."""
 
-    def __init__(self, stream: BinaryIO) -> None:
-        """Starts a file. Args: stream: open for writing, at its start; it stays open at `finish`."""
+    def __init__(self, stream: BinaryIO, kept: bool = False) -> None:
+        """Starts a file.
+
+        Args:
+            stream: open for writing, at its start; it stays open at `finish`.
+            kept: keeps what it writes in memory, too, where it is not long: see `contents`.
+        """
         self._stream = stream
         self._at, self._crc = 0, 0
         self._schemas: dict[str, Schema] = {}
@@ -72,6 +77,8 @@ class McapFile:
         self._index = bytearray()
         self._spans: list[tuple[int, int]] = []
         self._metadata: list[MetadataIndex] = []
+        self._plans: dict[object, RowPlan] = {}
+        self._written = Written() if kept else None
         self._compressor = zstandard.ZstdCompressor(level=_ZSTD_LEVEL)
         self._write(_MAGIC)
         self._write(record_bytes(Header("ros2", _LIBRARY)))
@@ -81,6 +88,15 @@ class McapFile:
         record = record_bytes(Metadata(name, dict(data)))
         self._metadata.append(MetadataIndex(self._at, len(record), name))
         self._write(record)
+        if self._written is not None:
+            self._written.metadata(name, data)
+
+    def contents(self) -> Contents | None:
+        """What the finished file holds; None: it was not kept, or it is too long for that."""
+        if self._written is None:
+            return None
+        channels = {channel.id: channel for channel in self._channels.values()}
+        return self._written.finished(channels, {schema.id: schema for schema in self._schemas.values()})
 
     def add_block(self, topics: Sequence[Topic], times: npt.NDArray[np.int64], columns: Mapping[str, Array]) -> None:
         """Writes one message per topic and tick.
@@ -95,11 +111,14 @@ class McapFile:
         chunk = _OpenChunk()
         ids = [self._channel(t.name, t.datatype, t.template.data, t.metadata, chunk) for t in topics]
         head = bytes(chunk.head.end())
-        rows, starts = self._rows(topics, ids, times, columns)
-        first = len(head) + np.arange(len(times), dtype=np.uint64) * np.uint64(rows.shape[1])
-        for channel, start in zip(ids, starts, strict=True):
-            chunk.index[channel] = np.column_stack((times.astype(np.uint64), first + np.uint64(start)))
-        self._add_chunk(head + rows.tobytes(), chunk.index, int(times.min()), int(times.max()))
+        plan = self._plan(topics, ids)
+        rows = plan.rows(times, [self._next(channel, len(times)) for channel in ids], columns)
+        index, begins = index_records(ids, plan.begins, times, rows.shape[1], len(head))
+        at = dict(zip(ids, begins, strict=True))
+        data = head + rows.tobytes()
+        self._add_chunk(data, index, at, int(times.min()), int(times.max()))
+        if self._written is not None:
+            self._written.chunk(data, [plan.places(ids, len(times), len(head))])
 
     def add_text(self, topic: str, time: int, text: str) -> None:
         """Writes one std_msgs/String at a log time in ns."""
@@ -112,12 +131,17 @@ class McapFile:
         chunk = _OpenChunk()
         channel = self._channel(topic, datatype, b"", dict, chunk)
         data = bytearray(chunk.head.end())
-        first, index = self._next(channel, len(messages)), list[tuple[int, int]]()
-        for place, (time, body) in enumerate(messages):
-            index.append((time, len(data)))
-            data += _MESSAGE.pack(Opcode.MESSAGE, _ENVELOPE + len(body), channel, first + place, time, time) + body
+        first, entries, places = self._next(channel, len(messages)), list[int](), list[tuple[tuple[int, Place]]]()
+        for number, (time, body) in enumerate(messages, first):
+            entries += time, len(data)
+            places.append(((channel, Place(len(data) + RECORD, 0, 1, len(body))),))
+            data += MESSAGE.pack(Opcode.MESSAGE, ENVELOPE + len(body), channel, number, time, time) + body
+        index = INDEX.pack(Opcode.MESSAGE_INDEX, 6 + 8 * len(entries), channel, 8 * len(entries))
+        index += struct.pack(f"<{len(entries)}Q", *entries)
         times = [time for time, _ in messages]
-        self._add_chunk(bytes(data), {channel: np.array(index, dtype=np.uint64)}, min(times), max(times))
+        self._add_chunk(bytes(data), index, {channel: 0}, min(times), max(times))
+        if self._written is not None:
+            self._written.chunk(bytes(data), places)
 
     def finish(self) -> None:
         """Writes the index. Without it the file is readable up to its last block."""
@@ -163,50 +187,26 @@ class McapFile:
         channel.write(chunk.head)
         return channel.id
 
+    def _plan(self, topics: Sequence[Topic], ids: Sequence[int]) -> RowPlan:
+        key = tuple(ids), tuple([topic.parts for topic in topics])
+        if key not in self._plans:
+            self._plans[key] = RowPlan.of(topics, ids)
+        return self._plans[key]
+
     def _next(self, channel: int, count: int) -> int:
         start = self._sequence.get(channel, 0)
         self._sequence[channel] = start + count
         self._counts[channel] = self._counts.get(channel, 0) + count
         return start
 
-    def _rows(
-        self, topics: Sequence[Topic], ids: Sequence[int], times: npt.NDArray[np.int64], columns: Mapping[str, Array]
-    ) -> tuple[npt.NDArray[np.uint8], list[int]]:
-        """(n, bytes per tick) message records, and the byte at which each topic's record starts in a row."""
-        n = len(times)
-        row, starts = bytearray(), list[int]()
-        for topic, channel in zip(topics, ids, strict=True):
-            starts.append(len(row))
-            row += _MESSAGE.pack(Opcode.MESSAGE, _ENVELOPE + len(topic.template.data), channel, 0, 0, 0)
-            row += topic.template.data
-        rows = np.tile(np.frombuffer(bytes(row), dtype=np.uint8), (n, 1))
-        seconds, rest = np.divmod(times, 1_000_000_000)
-        for topic, channel, start in zip(topics, ids, starts, strict=True):
-            sequence = self._next(channel, n) + np.arange(n)
-            put_values(rows, start + 11, sequence.astype("<u4"))
-            put_values(rows, start + 15, times.astype("<u8"))
-            put_values(rows, start + 23, times.astype("<u8"))
-            body = start + _MESSAGE.size
-            if topic.template.stamp is not None:
-                put_values(rows, body + topic.template.stamp, seconds.astype("<i4"))
-                put_values(rows, body + topic.template.stamp + 4, rest.astype("<u4"))
-            slot = 0
-            for channel_, order in topic.parts:
-                values = columns[channel_.name].reshape(n, -1)[:, order]
-                slot += put_numbers(rows, body, topic.template.offsets[slot : slot + len(order)], values)
-        return rows, starts
-
-    def _add_chunk(self, data: bytes, index: Mapping[int, npt.NDArray[np.uint64]], first: int, last: int) -> None:
+    def _add_chunk(self, data: bytes, index: bytes, begins: Mapping[int, int], first: int, last: int) -> None:
+        """Args: index: records of the messages' index; begins: channel → where its record begins in them."""
         packed = self._compressor.compress(data)
         record = record_bytes(Chunk("zstd", packed, last, first, zlib.crc32(data), len(data)))
         chunk_start = self._at
         self._write(record)
-        offsets: dict[int, int] = {}
-        index_start = self._at
-        for channel, entries in index.items():
-            offsets[channel] = self._at
-            body = entries.astype("<u8").tobytes()
-            self._write(struct.pack("<BQHI", Opcode.MESSAGE_INDEX, 6 + len(body), channel, len(body)) + body)
+        offsets = {channel: self._at + at for channel, at in begins.items()}
+        self._write(index)
         self._spans.append((first, last))
         self._index += record_bytes(
             ChunkIndex(
@@ -215,7 +215,7 @@ class McapFile:
                 compression="zstd",
                 compressed_size=len(packed),
                 message_end_time=last,
-                message_index_length=self._at - index_start,
+                message_index_length=len(index),
                 message_index_offsets=offsets,
                 message_start_time=first,
                 uncompressed_size=len(data),
