@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -106,11 +106,20 @@ class Poser:
 
     def placement(self, name: str) -> tuple[Array, Array] | None:
         """Position (3,) in m and quaternion (w, x, y, z) of a frame at the configuration asked for last, or None."""
-        site = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_SITE, name)
+        site = self.site(name)
         if site < 0:
             return None
-        position: Array = self._data.site_xpos[site].copy()
-        return position, quaternion(self._data.site_xmat[site].reshape(3, 3))
+        (position,), (rotation,) = self.sites([site])
+        return position, quaternion(rotation)
+
+    def site(self, name: str) -> int:
+        """Number of a frame's site; -1: there is no such frame."""
+        return mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_SITE, name)
+
+    def sites(self, numbers: Sequence[int]) -> tuple[Array, Array]:
+        """Positions (k, 3) in m and rotations (k, 3, 3) of sites at the configuration asked for last."""
+        data = self._data
+        return data.site_xpos[numbers], data.site_xmat[numbers].reshape(-1, 3, 3)
 
 
 def _is_robot(model: mujoco.MjModel, body: int, joints: int) -> bool:

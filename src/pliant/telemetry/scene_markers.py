@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from pliant.spatial import Array, rotation_of_quaternion
 from pliant.telemetry.mcap.scene_messages import Marker, MarkerKind
@@ -34,11 +35,21 @@ def line(group: str, rgba: tuple[float, float, float, float], points: Array, num
     return Marker("world", group, number, "line", (0.003, 0.0, 0.0), rgba, points=points)
 
 
-def arrow(frame: str, place: Array, force: Array, number: int) -> Marker:
-    """A force (3,) in N at a place (3,) in m, 5 mm per newton; one that cannot be seen is taken away."""
-    points = np.array([place, place + _ARROW * force])
-    shown = bool(np.isfinite(points).all()) and float(np.linalg.norm(force)) >= _LEAST_FORCE
-    return Marker("world", f"force at {frame}", number, "arrow", (0.008, 0.016, 0.0), _RED, points=points, shown=shown)
+def arrow(frame: str, number: int) -> Marker:
+    """The force at a frame; where it points is told with each time, see `arrow_points`."""
+    points = np.zeros((2, 3))
+    return Marker("world", f"force at {frame}", number, "arrow", (0.008, 0.016, 0.0), _RED, points=points)
+
+
+def arrow_points(places: Array, forces: Array) -> tuple[npt.NDArray[np.bool_], Array]:
+    """Start and end (k, 2, 3) in m of arrows, 5 mm per newton, and which of them (k,) can be seen.
+
+    Args:
+        places: (k, 3) m.
+        forces: (k, 3) N.
+    """
+    points = np.stack([places, places + _ARROW * forces], axis=1)
+    return np.isfinite(points).all(axis=(1, 2)) & (np.linalg.norm(forces, axis=1) >= _LEAST_FORCE), points
 
 
 Triple = tuple[float, float, float]

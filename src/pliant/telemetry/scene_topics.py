@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from pliant.spatial import Array
-from pliant.telemetry.mcap.scene_messages import MARKERS, TRANSFORMS, Marker, marker_array, transforms
+from pliant.spatial import Array, quaternions
+from pliant.telemetry.mcap.scene_messages import MARKERS, TRANSFORMS, marker_array, moving_markers, transforms
 from pliant.telemetry.mcap.topics import PREFIX
 from pliant.telemetry.mcap.writer import McapFile
-from pliant.telemetry.scene_markers import arrow, line, markers_of
+from pliant.telemetry.scene_markers import arrow, arrow_points, line, markers_of
 from pliant.visual_shapes import Poser, looks_of
 
 RATE = 30.0  # Hz
@@ -35,13 +36,11 @@ class DrawnScene:
 class _Path:
     """Places that a frame passed, none closer than a millimetre to the one before."""
 
-    points: list[Array] = field(default_factory=list)
+    points: list[list[float]] = field(default_factory=list)
 
-    def add(self, place: Array) -> None:
-        if np.isfinite(place).all() and (
-            not self.points or float(np.linalg.norm(place - self.points[-1])) >= _LEAST_STEP
-        ):
-            self.points.append(np.array(place))
+    def add(self, place: list[float]) -> None:
+        if all(map(math.isfinite, place)) and (not self.points or math.dist(place, self.points[-1]) >= _LEAST_STEP):
+            self.points.append(place)
 
 
 class SceneTopics:
@@ -75,19 +74,20 @@ class SceneTopics:
             self._first = int(times[0])
             markers = markers_of(looks_of(self._scene.model, self._scene.joints), self._frame_of)
             self._file.add_messages(f"{PREFIX}/scene", MARKERS, [(self._first, marker_array(self._first, markers))])
+        rows = self._chosen(times)
+        if not len(rows):
+            return
         names = _Names.of(columns)
-        frames: list[tuple[int, bytes]] = []
-        forces: list[tuple[int, bytes]] = []
-        for row in self._chosen(times):
-            time = int(times[row])
-            poses = self._poses(joints[row], row, columns, names)
-            frames.append((time, transforms(time, poses)))
-            if arrows := self._arrows(row, columns, names):
-                forces.append((time, marker_array(time, arrows)))
-            for name, key in names.places:
-                self._paths.setdefault(key, _Path()).add(columns[name][row])
-        self._file.add_messages("/tf", TRANSFORMS, frames)
-        self._file.add_messages(f"{PREFIX}/force", MARKERS, forces)
+        placed = self._placed(joints[rows], {name: columns[channel][rows] for channel, name in names.objects}, names)
+        frames = self._poses(placed)
+        self._send(
+            "/tf", TRANSFORMS, times[rows], transforms(times[rows], list(frames), np.stack([*frames.values()], 1))
+        )
+        self._send(f"{PREFIX}/force", MARKERS, times[rows], self._arrows(times[rows], rows, placed, columns, names))
+        for name, key in names.places:
+            path = self._paths.setdefault(key, _Path())
+            for place in columns[name][rows].tolist():
+                path.add(place)
 
     def finish(self) -> None:
         """Writes the paths."""
@@ -112,22 +112,59 @@ class SceneTopics:
         """World for what cannot move: it needs no transform."""
         return self._names[body] if body in self._moving else "world"
 
-    def _poses(self, q: Array, row: int, columns: Mapping[str, Array], names: _Names) -> dict[str, tuple[Array, Array]]:
-        objects = {name: columns[channel][row] for channel, name in names.objects}
-        positions, quaternions = self._poser.bodies(q, objects)
-        found = {self._names[body]: (positions[body], quaternions[body]) for body in self._moving}
-        for frame in names.frames:
-            if (place := self._poser.placement(frame)) is not None:
-                found.setdefault(frame, place)
-                found[f"{frame}_world_aligned"] = place[0], _NO_TURN
+    def _send(self, topic: str, kind: str, times: npt.NDArray[np.int64], messages: Sequence[bytes]) -> None:
+        self._file.add_messages(topic, kind, [*zip(times.tolist(), messages, strict=False)])
+
+    def _placed(self, q: Array, objects: Mapping[str, Array], names: _Names) -> _Placed:
+        """Where everything is. Args: q: (k, n) rad; objects: thing → (k, 7) position and quaternion."""
+        known = [(frame, site) for frame in names.frames if (site := self._poser.site(frame)) >= 0]
+        sites = [site for _, site in known]
+        k = len(q)
+        bodies, places = np.empty((k, len(self._moving), 7)), np.empty((k, len(sites), 3))
+        rotations = np.empty((k, len(sites), 3, 3))
+        for row in range(k):
+            positions, turns = self._poser.bodies(q[row], {name: pose[row] for name, pose in objects.items()})
+            bodies[row, :, :3], bodies[row, :, 3:] = positions[self._moving], turns[self._moving]
+            places[row], rotations[row] = self._poser.sites(sites)
+        attitudes = quaternions(rotations).reshape(k, -1, 4)
+        return _Placed(bodies, [frame for frame, _ in known], np.concatenate([places, attitudes], axis=2))
+
+    def _poses(self, placed: _Placed) -> dict[str, Array]:
+        """Frame → (k, 7) position and quaternion."""
+        found = {self._names[body]: placed.bodies[:, number] for number, body in enumerate(self._moving)}
+        for number, frame in enumerate(placed.frames):
+            pose = placed.poses[:, number]
+            found.setdefault(frame, pose)
+            aligned = found[f"{frame}_world_aligned"] = pose.copy()
+            aligned[:, 3:] = _NO_TURN
         return found
 
-    def _arrows(self, row: int, columns: Mapping[str, Array], names: _Names) -> list[Marker]:
-        found: list[Marker] = []
-        for name, frame in names.forces:
-            if (place := self._poser.placement(frame)) is not None:
-                found.append(arrow(frame, place[0], columns[name][row][:3], len(found)))
-        return found
+    def _arrows(
+        self,
+        times: npt.NDArray[np.int64],
+        rows: npt.NDArray[np.intp],
+        placed: _Placed,
+        columns: Mapping[str, Array],
+        names: _Names,
+    ) -> list[bytes]:
+        drawn = [(name, placed.frames.index(frame)) for name, frame in names.forces if frame in placed.frames]
+        if not drawn:
+            return []
+        seen = [arrow_points(placed.poses[:, at, :3], columns[name][rows, :3]) for name, at in drawn]
+        markers = [arrow(placed.frames[at], number) for number, (_, at) in enumerate(drawn)]
+        shown, points = (np.stack(part, axis=1) for part in zip(*seen, strict=True))
+        return moving_markers(times, markers, shown, points)
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """Where bodies and frames are, at k times."""
+
+    bodies: Array
+    """(k, moving bodies, 7) position in m and quaternion (w, x, y, z)"""
+    frames: list[str]
+    poses: Array
+    """(k, frames, 7)"""
 
 
 @dataclass(frozen=True)

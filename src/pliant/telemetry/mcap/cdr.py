@@ -47,6 +47,11 @@ class CdrBuffer:
         if len(values):
             self.doubles(values)
 
+    @property
+    def size(self) -> int:
+        """Bytes of the message so far."""
+        return len(_HEADER) + len(self._data)
+
     def finished(self) -> bytes:
         """The message."""
         return _HEADER + bytes(self._data)

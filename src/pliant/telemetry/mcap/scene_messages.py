@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from pliant.spatial import Array
 from pliant.telemetry.mcap.cdr import CdrBuffer
@@ -72,9 +74,11 @@ SCENE_DEFINITIONS: Mapping[str, str] = {
 }
 """ROS 2 type → its definition with those that it needs"""
 
+Array64 = npt.NDArray[np.int64]
 MarkerKind = Literal["arrow", "cube", "sphere", "cylinder", "line", "triangles"]
 _KINDS: Mapping[MarkerKind, int] = {"arrow": 0, "cube": 1, "sphere": 2, "cylinder": 3, "line": 4, "triangles": 11}
 _ADD, _DELETE = 0, 2
+_STAMP = 8  # bytes
 _NO_POINTS = np.empty((0, 3))
 
 
@@ -100,16 +104,78 @@ class Marker:
     """False: takes the marker of that group and number away"""
 
 
-def transforms(time: int, poses: Mapping[str, tuple[Array, Array]]) -> bytes:
-    """A TFMessage. Args: time: ns; poses: frame → position (3,) in m and quaternion (w, x, y, z) in the world."""
-    buffer = CdrBuffer()
-    buffer.put("I", len(poses))
-    for frame, (position, (w, x, y, z)) in poses.items():
-        buffer.stamp(time)
+def transforms(times: Array64, frames: Sequence[str], poses: Array) -> list[bytes]:
+    """TFMessages of the same frames.
+
+    Args:
+        times: (k,) ns.
+        frames: f names.
+        poses: (k, f, 7) positions in m and quaternions (w, x, y, z) in the world.
+    """
+    shape = _transforms_of(tuple(frames))
+    return shape.filled(times, [poses[:, frame, [0, 1, 2, 4, 5, 6, 3]] for frame in range(len(frames))])
+
+
+def moving_markers(times: Array64, markers: Sequence[Marker], shown: Array, points: Array) -> list[bytes]:
+    """MarkerArrays of markers that differ in their points alone, and in whether they are shown.
+
+    Args:
+        times: (k,) ns.
+        markers: m, as at one of the times.
+        shown: (k, m) whether.
+        points: (k, m, p, 3) m, as many as the markers have.
+    """
+    buffer, stamps = CdrBuffer(), list[int]()
+    buffer.put("I", len(markers))
+    actions, corners = list[int](), list[int]()
+    for marker in markers:
+        places = _put_marker(buffer, 0, marker)
+        for found, place in zip((stamps, actions, corners), places, strict=True):
+            found.append(place)
+    shape = _Shape(buffer.finished(), tuple(stamps), tuple(corners))
+    action = np.where(shown, _ADD, _DELETE).astype("<i4")
+    more = [(at, action[:, number]) for number, at in enumerate(actions)]
+    return shape.filled(times, [points[:, number].reshape(len(times), -1) for number in range(len(markers))], more)
+
+
+@dataclass(frozen=True, slots=True)
+class _Shape:
+    """A message whose stamps and numbers change."""
+
+    template: bytes
+    stamps: tuple[int, ...]
+    """bytes at which stamps begin"""
+    numbers: tuple[int, ...]
+    """bytes at which groups of float64 begin"""
+
+    def filled(
+        self,
+        times: Array64,
+        groups: Sequence[Array],
+        more: Sequence[tuple[int, npt.NDArray[np.int32]]] = (),
+    ) -> list[bytes]:
+        """Messages at times (k,) ns. Args: groups: (k, numbers) of each group; more: byte and integers (k,)."""
+        rows = np.tile(np.frombuffer(self.template, dtype=np.uint8), (len(times), 1))
+        stamp = np.stack(np.divmod(times, 1_000_000_000), axis=1).astype("<u4")
+        fields = [*((at, stamp) for at in self.stamps), *((at, values[:, None]) for at, values in more)]
+        for at, values in (*fields, *zip(self.numbers, groups, strict=True)):
+            data = np.ascontiguousarray(values).view(np.uint8)
+            rows[:, at : at + data.shape[1]] = data
+        return [row.tobytes() for row in rows]
+
+
+@lru_cache(maxsize=16)
+def _transforms_of(frames: tuple[str, ...]) -> _Shape:
+    buffer, stamps, numbers = CdrBuffer(), list[int](), list[int]()
+    buffer.put("I", len(frames))
+    for frame in frames:
+        buffer.stamp(0)
+        stamps.append(buffer.size - _STAMP)
         buffer.text("world")
         buffer.text(frame)
-        buffer.doubles([*position, x, y, z, w])
-    return buffer.finished()
+        buffer.doubles(np.zeros(7))
+        numbers.append(buffer.size - 7 * 8)
+    return _Shape(buffer.finished(), tuple(stamps), tuple(numbers))
 
 
 def marker_array(time: int, markers: Sequence[Marker]) -> bytes:
@@ -121,17 +187,22 @@ def marker_array(time: int, markers: Sequence[Marker]) -> bytes:
     return buffer.finished()
 
 
-def _put_marker(buffer: CdrBuffer, time: int, marker: Marker) -> None:
+def _put_marker(buffer: CdrBuffer, time: int, marker: Marker) -> tuple[int, int, int]:
+    """Returns at which bytes its stamp, what is done with it, and its points begin."""
     w, x, y, z = marker.quaternion
     buffer.stamp(time)
+    stamp = buffer.size - _STAMP
     buffer.text(marker.frame)
     buffer.text(marker.group)
     buffer.put("i", marker.number, _KINDS[marker.kind], _ADD if marker.shown else _DELETE)
+    action = buffer.size - 4
     buffer.doubles([*marker.position, x, y, z, w, *marker.scale])
     buffer.put("f", *marker.rgba)
     buffer.stamp(0)  # stays
     buffer.put("?", True)  # moves with its frame
-    buffer.points(_NO_POINTS if marker.points is None else marker.points)
+    points = _NO_POINTS if marker.points is None else marker.points
+    buffer.points(points)
+    corners = buffer.size - 8 * points.size
     buffer.put("I", 0)  # colours of the points
     buffer.text("")  # texture: file, header, format, bytes
     buffer.stamp(0)
@@ -144,3 +215,4 @@ def _put_marker(buffer: CdrBuffer, time: int, marker: Marker) -> None:
     buffer.text("")
     buffer.put("I", 0)
     buffer.put("?", False)
+    return stamp, action, corners
