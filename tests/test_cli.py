@@ -63,22 +63,25 @@ def test_run_prints_a_table_and_leaves_log_figures_and_summary(
 
 @pytest.mark.study
 def test_the_log_of_a_run_can_be_described_and_drawn(
-    finished: tuple[subprocess.CompletedProcess[str], Path], tmp_path: Path
+    finished: tuple[subprocess.CompletedProcess[str], Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("pliant.cli.program.out", Console(width=160))
     (log,) = finished[1].glob("*.mcap")
-    result = pliant("log", str(log), "--plot", "--out", str(tmp_path), cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = CLI.invoke(app, ["log", str(log), "--plot", "--out", str(tmp_path)])
+    assert result.exit_code == 0, result.output
     assert "truth/flange/position" in result.stdout
     assert list(tmp_path.glob("*.png"))
 
 
 @pytest.mark.study
-def test_a_run_is_repeated_bit_for_bit_from_its_configuration(tmp_path: Path) -> None:
+def test_a_run_is_repeated_bit_for_bit_from_its_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("pliant.cli.program.out", Console(width=160))
     first = ["stack", "--case", "figure8-pushed", "--set", "duration=2.0", "--set", "path.ramp=0.5", "--seed", "3"]
     logs: list[bytes] = []
     for name, asked in (("a", first), ("b", ["a/config.toml"]), ("c", ["a/config.toml", "--seed", "4"])):
-        result = pliant("run", *asked, "--no-figures", "--out", name, cwd=tmp_path)
-        assert result.returncode == 0, result.stderr
+        result = CLI.invoke(app, ["run", *asked, "--no-figures", "--out", name])
+        assert result.exit_code == 0, result.output
         assert not list((tmp_path / name).glob("*.png"))
         assert f"again    pliant run {name}/config.toml" in result.stdout
         (log,) = (tmp_path / name).glob("*.mcap")
@@ -88,12 +91,13 @@ def test_a_run_is_repeated_bit_for_bit_from_its_configuration(tmp_path: Path) ->
 
 
 @pytest.mark.study
-def test_a_configuration_file_and_overrides_reach_the_run(tmp_path: Path) -> None:
+def test_a_configuration_file_and_overrides_reach_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.toml").write_text(
         'study = "stack"\ncase = "figure8-hardware"\nduration = 2.5\npreset = "table-1-robot"\n[path]\nramp = 0.5\n'
     )
-    result = pliant("run", "mine.toml", "--no-figures", "--set", "path.period=3.0", "--out", "out", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = CLI.invoke(app, ["run", "mine.toml", "--no-figures", "--set", "path.period=3.0", "--out", "out"])
+    assert result.exit_code == 0, result.output
     (log,) = (tmp_path / "out").glob("*.mcap")
     config = Log.open(log).info.config
     assert config["preset"] == "table-1-robot"

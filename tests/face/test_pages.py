@@ -13,10 +13,18 @@ import pytest
 from typer.testing import CliRunner
 
 from pliant.cli.app import app
+from pliant.experiments import sweep
+from pliant.experiments.runner import run_case
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = ("five_minutes", "your_arm", "extend_controller", "extend_task", "extend_robot", "extend_metric")
 RUN = ("sh", "python", "xml", "csv", "toml")
+BRIEFLY = (
+    ("pliant run", "duration=4"),
+    ("pliant compare haptic", "duration=2"),
+    ("pliant compare haptic", "checks=[]"),  # which lie later
+)
+"""command, and what is set where a shorter run shows that it does what it says"""
 
 
 class Block(NamedTuple):
@@ -50,6 +58,9 @@ def do(block: Block, scope: dict[str, object]) -> None:
             assert name == "pliant"
             if arguments[0] == "run" and not {"--no-figures", "--show-config"} & set(arguments):
                 arguments.append("--no-figures")  # which other tests draw; they take most of the time
+            for beginning, setting in BRIEFLY:
+                if line == beginning or line.startswith(f"{beginning} --controllers"):
+                    arguments += ["--set", setting]
             result = CliRunner().invoke(app, arguments)
             assert result.exit_code == 0, f"{line}\n{result.output}\n{result.exception!r}"
 
@@ -58,6 +69,7 @@ def do(block: Block, scope: dict[str, object]) -> None:
 def test_the_page_does_what_it_says(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sweep, "run_case", lambda *what, figures: run_case(*what, figures=False))  # of a comparison
     if page == "your_arm":  # whose reader has one
         (arm,) = (one for one in blocks((DOCS / "extend_robot.md").read_text()) if one.file == "my_arm.xml")
         do(arm, {})

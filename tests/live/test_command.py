@@ -106,7 +106,7 @@ def test_a_log_cut_off_in_the_middle_is_shown_up_to_there(log: Path, tmp_path: P
 
 def test_a_page_beside_a_run_ends_with_it(tmp_path: Path) -> None:
     """`pliant run --live` writes what it writes without a page."""
-    settings = ["--set", "path.kind=hold", "--set", "path.ramp=0.0", "--set", "duration=1.5"]
+    settings = ["--no-figures", "--set", "path.kind=hold", "--set", "path.ramp=0.0", "--set", "duration=1.5"]
     done = pliant("run", "stack", "--case", "figure8-plain", "--live", "--out", str(tmp_path), *settings)
     assert done.returncode == 0, done.stderr
     assert "open  http://127.0.0.1:" in done.stdout

@@ -22,6 +22,7 @@ from pliant.studies.task.study import study_of
 from pliant.studies.task.true_scene import true_scene
 
 SHIFT = (0.003, -0.002, 0.001)  # m
+LONG_ENOUGH = 5.0  # s: the task is done after 3 s and then rests until its timeouts, 11 s, are over
 
 
 def peg(**things: Any) -> TaskCase:
@@ -114,9 +115,11 @@ def side_force(modes: tuple[str, ...]) -> float:
         "insert-peg",
         truth={"imperfections": "none", "things": {"hole": hole}},
         timing={"sensing_delay": 0.0, "computation_delay": 0.0},
+        duration=LONG_ENOUGH,
         **changed,
     )
     assert made.failure is None, made.failure
+    assert made.log.phases()[-1][0] < LONG_ENOUGH - 1.0
     inside = within(made.log, made.log.time("measurement/q"), "rest", 0.5)
     return float(np.linalg.norm(made.log["truth/tool/wrench"][inside, :2], axis=1).mean())
 
@@ -131,6 +134,9 @@ def test_a_peg_that_gives_way_rests_without_force_on_its_sides() -> None:
 @pytest.mark.parametrize(("controller", "seed"), [("haptic", 0), ("offset-free-mpc", 1)])
 def test_an_imperfect_arm_puts_the_peg_into_a_hole_that_is_elsewhere(controller: str, seed: int) -> None:
     """Of the seeds of `benchmarks/insertion.py`, one each."""
-    made = run("insert-peg", seed=seed, controller=controller)
+    made = run("insert-peg", seed=seed, controller=controller, duration=LONG_ENOUGH)
     assert made.failure is None, made.failure
+    begun, last = made.log.phases()[-1]
+    assert last == "rest"
+    assert begun < LONG_ENOUGH - 1.0
     assert made.metrics["insert/side_force_max"].value < 15.0
