@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pliant.errors import ConfigError, ShapeError, SignalError
-from pliant.spatial import as_vector, exp3, frame_with_z_along, log3, quaternions, rpy, skew
+from pliant.spatial import as_vector, exp3, frame_with_z_along, log3, quaternion, quaternions, rpy, skew
 from tests.rotations import left_jacobian_inverse
 
 directions = st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda d: math.hypot(*d) > 1e-2)
@@ -62,8 +62,10 @@ def test_quaternions_have_the_bits_of_pinocchio() -> None:
     rotations = np.array([exp3(size * axis) for size, axis in zip(sizes, axes, strict=True)])
     wanted = [[q.w, q.x, q.y, q.z] for q in map(pin.Quaternion, rotations)]
     np.testing.assert_array_equal(quaternions(rotations), wanted)
+    np.testing.assert_array_equal([quaternion(R) for R in rotations], wanted)
     assert set(np.argmax(np.abs(wanted), axis=1)) == {0, 1, 2, 3}
     rotations[3, 1, 1] = math.nan
+    assert np.isnan(quaternion(rotations[3])).all()
     found = quaternions(rotations)
     assert np.isnan(found[3]).all()
     assert np.isfinite(np.delete(found, 3, axis=0)).all()

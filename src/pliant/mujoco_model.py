@@ -22,7 +22,7 @@ _LEAST = 1e-12
 """kg, kg m²: MuJoCo requires mass on every moving body, also between two joints at one point"""
 
 
-def spec_from_robot(robot: Robot) -> mujoco.MjSpec:
+def spec_from_robot(robot: Robot, looks: bool = True) -> mujoco.MjSpec:
     """A MuJoCo specification with the robot's bodies, joints, frames (as sites of the same name) and looks.
 
     The robot stands in an empty world under gravity; there is no joint damping, friction, actuator or contact in it.
@@ -30,6 +30,7 @@ def spec_from_robot(robot: Robot) -> mujoco.MjSpec:
 
     Args:
         robot: any robot; joints are revolute or prismatic.
+        looks: whether its shapes are in it, of which meshes take longer than all else.
 
     Returns:
         A specification that can be extended and compiled.
@@ -43,7 +44,8 @@ def spec_from_robot(robot: Robot) -> mujoco.MjSpec:
     for index in range(1, robot.model.njoints):
         bodies.append(_add_body(robot, bodies, index, motions[index - 1]))
     _add_frames(robot, bodies)
-    _add_visuals(robot, spec, bodies)
+    if looks:
+        _add_visuals(robot, spec, bodies)
     return spec
 
 

@@ -28,7 +28,7 @@ class MinkSolver(PoseSolver):
 
     def __init__(self, robot: Robot, frame: str) -> None:
         super().__init__(robot, frame)
-        model: mujoco.MjModel = spec_from_robot(robot).compile()
+        model: mujoco.MjModel = spec_from_robot(robot, looks=False).compile()
         self._configuration = mink.Configuration(model)
         self._pose = mink.FrameTask(frame, "site", position_cost=1.0, orientation_cost=1.0)
         n = robot.n
