@@ -19,6 +19,8 @@ from pliant.validation_text import shown, validation_sentence
 
 MOST = 1e12
 """largest absolute value in a configuration, in any unit; beyond it sums and products overflow or lose their meaning"""
+_NO_TRUTH_VALUE = frozenset((float, int, str, type(None)))
+"""types of values that are none and hold none"""
 
 
 class Config(BaseModel):
@@ -35,6 +37,8 @@ class Config(BaseModel):
     @classmethod
     def _is_no_truth_value(cls, value: Any, info: ValidationInfo) -> Any:
         """A quantity is a number: Python would read true as 1."""
+        if type(value) in _NO_TRUTH_VALUE:  # most fields of most configurations
+            return value
         about = cls.model_fields.get(info.field_name or "")
         counts = about is not None and unit_of(about) != "" and about.annotation is not bool
         if counts and not isinstance(value, dict) and any(isinstance(number, bool) for number in _numbers(value)):
@@ -44,7 +48,7 @@ class Config(BaseModel):
     @field_validator("*")
     @classmethod
     def _is_of_this_world(cls, value: Any) -> Any:
-        if any(abs(number) > MOST for number in _numbers(value)):
+        if not isinstance(value, (str, BaseModel)) and any(abs(number) > MOST for number in _numbers(value)):
             raise ValueError(f"a number of a configuration is at most {MOST:g} in size")
         return value
 
