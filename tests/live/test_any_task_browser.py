@@ -60,25 +60,25 @@ def test_the_way_of_the_tool_is_coloured_by_its_error(shown: Live) -> None:
     shown.shoot("any_task")
 
 
-@pytest.mark.parametrize(("width", "height"), [(900, 600), (844, 390)])
-def test_a_small_window_shows_scene_and_controls(shown: Live, width: int, height: int) -> None:
+def test_a_small_window_shows_scene_and_controls(shown: Live) -> None:
     """The curves begin folded, the controls do not; in a wide window (the control) both are open."""
     tab = shown.tab
     tab.get_by_text("force shown").wait_for()
-    tab.set_viewport_size({"width": width, "height": height})
-    tab.reload()
     try:
-        button = tab.get_by_role("button", name="Pause")
-        button.wait_for()
-        until(lambda: 0.5 * width < canvas_width(shown) < width - 300.0, "folded curves beside open controls")
-        pause = button.bounding_box()
-        assert pause is not None
-        assert pause["y"] + pause["height"] < height
-        shown.shoot(f"any_task_{width}x{height}")
-        if width == 900:
-            tab.get_by_role("button", name="Expand").first.click()
-            until(lambda: canvas_width(shown) < 250.0, "the open curves")
-            shown.shoot("any_task_900x600_open")
+        for width, height in ((844, 390), (900, 600)):
+            tab.set_viewport_size({"width": width, "height": height})
+            tab.reload()
+            button = tab.get_by_role("button", name="Pause")
+            button.wait_for()
+            folded = (0.5 * width, width - 300.0)  # beside open controls
+            until(lambda folded=folded: folded[0] < canvas_width(shown) < folded[1], "folded curves")
+            pause = button.bounding_box()
+            assert pause is not None
+            assert pause["y"] + pause["height"] < height
+            shown.shoot(f"any_task_{width}x{height}")
+        tab.get_by_role("button", name="Expand").first.click()
+        until(lambda: canvas_width(shown) < 250.0, "the open curves")
+        shown.shoot("any_task_900x600_open")
     finally:
         tab.set_viewport_size({"width": 1280, "height": 800})
         tab.reload()
