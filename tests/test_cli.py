@@ -110,7 +110,7 @@ def test_show_config_prints_every_value_and_runs_nothing(tmp_path: Path, monkeyp
     monkeypatch.chdir(tmp_path)
     result = CLI.invoke(app, ["run", "stack", "--show-config", "--set", "path.period=3.0"])
     assert result.exit_code == 0, result.output
-    rows = {line.split()[0]: line.split()[1:] for line in result.stdout.splitlines()}
+    rows = {line.split()[0]: line.split()[1:] for line in result.stdout.partition("\n\n")[0].splitlines()}
     assert rows["path.period"] == ["3.0", "s", "--set"]
     assert rows["physics_step"][-1] == "default"
     assert not list(tmp_path.iterdir())
@@ -121,7 +121,7 @@ def test_set_takes_lists_and_empties_lists_and_options() -> None:
         arguments = [part for text in sets for part in ("--set", text)]
         result = CLI.invoke(app, ["run", "haptic", "--show-config", *arguments])
         assert result.exit_code == 0, result.output
-        return {line.split()[0]: line.split()[1:] for line in result.stdout.splitlines()}
+        return {line.split()[0]: line.split()[1:] for line in result.stdout.partition("\n\n")[0].splitlines()}
 
     usual = shown()
     assert usual["checks"][0] != "[]"  # baseline: there is something to empty

@@ -48,20 +48,30 @@ class Config(BaseModel):
     @field_validator("*")
     @classmethod
     def _is_of_this_world(cls, value: Any) -> Any:
-        if not isinstance(value, (str, BaseModel)) and any(abs(number) > MOST for number in _numbers(value)):
-            raise ValueError(f"a number of a configuration is at most {MOST:g} in size")
+        if isinstance(value, (str, BaseModel)):
+            return value
+        for path, number in _placed_numbers(value):
+            if not abs(number) <= MOST:
+                inside = f"{'.'.join(path)}: " if path else ""
+                raise ValueError(f"{inside}a number of a configuration is at most {MOST:g} in size, got {number:g}")
         return value
 
 
 def _numbers(value: Any) -> Iterator[float]:
+    for _, number in _placed_numbers(value):
+        yield number
+
+
+def _placed_numbers(value: Any, above: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], float]]:
+    """Each number with the keys of the tables that it stands in."""
     if isinstance(value, (int, float)):
-        yield value
+        yield above, value
     elif isinstance(value, (tuple, list)):
         for entry in cast("Sequence[Any]", value):
-            yield from _numbers(entry)
+            yield from _placed_numbers(entry, above)
     elif isinstance(value, dict):
-        for entry in cast("dict[Any, Any]", value).values():
-            yield from _numbers(entry)
+        for key, entry in cast("dict[Any, Any]", value).items():
+            yield from _placed_numbers(entry, (*above, str(key)))
 
 
 C = TypeVar("C", bound=BaseModel)

@@ -17,6 +17,7 @@ from pliant.dotted import flat
 from pliant.errors import ConfigError, options
 from pliant.interfaces import Compensation, Controller, Needs, ReferenceSource
 from pliant.robot import Robot
+from pliant.rules import Rule
 from pliant.signals import ImpedanceTuning
 from pliant.surfaces import SurfaceGeometry
 
@@ -76,13 +77,20 @@ class Believed:
     motion beside it"""
     turns: Mapping[str, tuple[bool, ...]] = field(default_factory=lambda: _NOTHING)
     """phase of `axes` → which rotations about the three axes of the first frame are held; without an entry all are"""
+    noise_force: float = 0.0
+    """N, standard deviation of the force sensor's noise"""
+
+    @property
+    def late(self) -> float:
+        """s by which the loop is late: its period, the age of a reading, and the time to the effect of a command."""
+        return self.period + self.sensing_delay + self.computation_delay
 
 
 def _always(config: Any) -> bool:
     return True
 
 
-def _no_advice(robot: Robot, config: Any, period: float) -> tuple[str, ...]:
+def _no_advice(robot: Robot, config: Any, believed: Believed) -> tuple[str, ...]:
     return ()
 
 
@@ -113,8 +121,8 @@ class ControllerEntry(Generic[C]):
     """its default configuration, whose type is the schema"""
     build: Callable[[Robot, C, float], Controller[Any]]
     """robot, configuration, control period in s → controller"""
-    advise: Callable[[Robot, C, float], tuple[str, ...]] = _no_advice
-    """robot, configuration, control period in s → warnings about unsafe parameters, as sentences"""
+    advise: Callable[[Robot, C, Believed], tuple[str, ...]] = _no_advice
+    """robot, configuration, what is believed of the task → warnings about unsafe parameters, as sentences"""
     family: str = "other"
     """controllers of one family share the type of their configuration"""
     guarantees: str = "–"
@@ -127,6 +135,8 @@ class ControllerEntry(Generic[C]):
     """configuration → signals that it needs"""
     suggest: Callable[[Robot, C, Believed], C] = _as_it_is
     """robot, initial configuration, what is believed of the task → a configuration that suits robot and task"""
+    rules: tuple[Rule, ...] = ()
+    """of what `suggest` changes; of a key the first one counts"""
     fixed: Mapping[str, Any] = field(default_factory=lambda: _NOTHING)
     """values of the configuration that make this controller of its family what it is"""
     filter: Callable[[ReferenceSource[Any], Robot, C], ReferenceSource[Any]] = _unfiltered

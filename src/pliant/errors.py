@@ -18,6 +18,10 @@ class RobotError(PliantError):
     """A robot that cannot be loaded, or that lacks a frame or a joint."""
 
 
+class UnknownFrameError(RobotError):
+    """A frame that a robot does not have."""
+
+
 class ShapeError(PliantError):
     """An array whose shape does not fit the robot or the task."""
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from pliant.errors import ConfigError, RobotError, ShapeError, SignalError, options
+from pliant.errors import ConfigError, RobotError, ShapeError, SignalError, UnknownFrameError, options
 from pliant.robots.assembly import assemble
 from pliant.robots.known_rotors import Rotors
 from pliant.robots.locking import lock
@@ -128,9 +128,9 @@ class Robot:
         return np.array(self.model.armature, dtype=np.float64)
 
     def frame_id(self, name: str) -> int:
-        """Index of a frame. Raises RobotError, with the frames there are, if it does not exist."""
+        """Index of a frame. Raises UnknownFrameError, with the frames there are, if it does not exist."""
         if name == _WORLD or not self.model.existFrame(name):
-            raise RobotError(f"robot {self.name!r} has no frame {name!r}; {options(self.frame_names, name)}")
+            raise UnknownFrameError(f"robot {self.name!r} has no frame {name!r}; {options(self.frame_names, name)}")
         return int(self.model.getFrameId(name))
 
     def joint_index(self, name: str) -> int:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
 import pinocchio as pin
 import pytest
 
-from pliant.controllers.advice import advise, sentences, smallest_inertia
+from pliant.controllers.advice import advise, advise_damping, sentences, smallest_inertia
 from pliant.controllers.presets import STIFF_STACK, TABLE_I_SIMULATION
 from pliant.controllers.profiles import ForceProfile
 from pliant.robot import Robot
@@ -90,3 +92,23 @@ def test_the_smallest_inertia_is_a_bound_that_is_reached(lwr4: Robot) -> None:
         felt.append(1.0 / float(f @ a))
     assert min(felt) >= inertia[0] * (1 - 1e-9)
     assert min(felt) <= inertia[0] * 1.05
+
+
+def test_a_damping_that_the_loop_is_too_late_for_is_named() -> None:
+    """v̇ = −d v(t − T): grows above d T = π/2 and decays below, and the warning says which."""
+
+    def last(d: float, late: float, dt: float = 1e-4) -> float:
+        delayed = deque([1.0] * round(late / dt))
+        v = 1.0
+        for _ in range(round(200 * late / dt)):
+            delayed.append(v)
+            v -= dt * d * delayed.popleft()
+        return max(map(abs, delayed))
+
+    late = 7e-3
+    for turn, word in ((1.7, "is unstable"), (1.4, "makes it swing")):
+        (text,) = advise_damping(turn / late, late)
+        assert word in text
+        assert (last(turn / late, late) > 1.0) == (word == "is unstable")
+    assert advise_damping(0.4 / late, late) == ()
+    assert advise_damping(0.0, late) == ()

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pliant.controllers import presets
 from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationConfig
 from pliant.controllers.registry import CONTROLLERS, build_stack
-from pliant.entries import find_entry, merged_entries
+from pliant.entries import Believed, find_entry, merged_entries
 from pliant.errors import ConfigError
 from pliant.robot import Robot
 from pliant.signals import Estimate, Reference, TaskReference
@@ -29,7 +29,7 @@ def test_every_entry_builds_and_runs(lwr4: Robot, name: str) -> None:
     command, _ = controller.step(estimate, reference, controller.init(estimate))
     assert np.isfinite(command.torque).all()
     assert np.all(np.abs(command.torque) <= lwr4.torque_limit)
-    assert entry.advise(lwr4, entry.default, 1e-3) == ()
+    assert entry.advise(lwr4, entry.default, Believed(("flange",), 1e-3)) == ()
     assert entry.summary
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from pliant import _mpc
 from pliant.configuration import merged
+from pliant.entries import Believed
 from pliant.mpc.defaults import ForceFeedbackMpc
 from pliant.mpc.noisy_loop import BenchCase, NoisyLoop
 from pliant.mpc.registry import CONTROLLERS
@@ -65,7 +66,9 @@ def test_what_the_docs_recommend_converges_and_the_default_costs_do_not(press: b
         own = {name: {"activation": activation} for name in ("force", "force_rate")}
         contact = {"dimension": 3, "friction": friction, "stiffness": (1e3,), "damping": (10.0, 10.0, 100.0)}
         settings = merged(ForceFeedbackMpc(), {"contact": contact, "costs": own})
-        assert bool(CONTROLLERS["force-feedback-mpc"].advise(robot, settings, 1e-3)) == (activation == (1.0,))
+        assert bool(CONTROLLERS["force-feedback-mpc"].advise(robot, settings, Believed(("flange",), 1e-3))) == (
+            activation == (1.0,)
+        )
         loop, solutions = NoisyLoop(BenchCase("", settings, robot, press=press)), []
         for _ in range(500):
             x = loop.next_state()

@@ -17,6 +17,7 @@ from pliant.experiments.base import CaseConfig, Experiment, Study, check_windows
 from pliant.experiments.origins import origins
 from pliant.experiments.repeat import write_config
 from pliant.experiments.runner import run_case
+from pliant.rules import Rule
 from pliant.telemetry.output import output_folder
 
 
@@ -102,11 +103,19 @@ def show_config(
     overrides: Mapping[str, Any],
     assignments: Sequence[str],
 ) -> None:
-    """Prints each value of a run, its unit and its origin; runs nothing. Raises PliantError: bad input."""
+    """Prints each value of a run, its unit and its origin, and the rules of what is suggested; runs nothing.
+
+    Raises:
+        PliantError: bad input.
+    """
     choice = resolve(target, case, overrides, assignments)
     rows = origins(choice, choice.study.build(choice.config).parameters)
-    table = [("key", "value", "unit", "from"), *((row.key, row.shown, row.unit, row.origin) for row in rows)]
+    rules = list(dict.fromkeys(row.rule for row in rows if row.rule is not None))
+    numbers: dict[Rule | None, str] = {rule: f" [{number}]" for number, rule in enumerate(rules, start=1)}
+    named = [(row.key, row.shown, row.unit, row.origin + numbers.get(row.rule, "")) for row in rows]
+    table = [("key", "value", "unit", "from"), *named]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    for cells in table:
-        line = "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
+    lines = ["  ".join(map(str.ljust, cells, widths)) for cells in table]
+    told = [f"{number.strip()} {rule.told}" for rule, number in numbers.items() if rule is not None]
+    for line in (*lines, *(["", "rules of what is suggested:", *told] if told else ())):
         console.print(line.rstrip(), markup=False, highlight=False, soft_wrap=True)

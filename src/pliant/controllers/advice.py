@@ -19,6 +19,7 @@ from pliant.spatial import Array
 
 SAFE_PHASE = 0.4
 """largest ω T_s at which a sampled axis was found stable (a 1-DoF mass becomes unstable at 0.8)"""
+_SAFE_TURN = 1.0
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,24 @@ def advise(
         if leak > knee_energy:
             found.append(_knee(axis, leak, knee_energy, speed))
     return found
+
+
+def advise_damping(motion_damping: float, late: float) -> tuple[str, ...]:
+    """A warning about a damping that the loop is too late for. A mass with a damping of d per s that acts T late is
+    stable for d T < π/2 (its speed follows v̇ = −d v(t − T)); beyond 1 it swings.
+
+    Args:
+        motion_damping: d, 1/s.
+        late: T, s.
+    """
+    if motion_damping * late <= _SAFE_TURN:
+        return ()
+    turn = motion_damping * late
+    what = "is unstable" if turn >= math.pi / 2.0 else "makes it swing"
+    return (
+        f"motion_damping of {motion_damping:g} /s {what} in a loop that is {1e3 * late:g} ms late (d T = {turn:.2f},"
+        f" stable below π/2); safe: motion_damping ≤ {SAFE_PHASE / late:.3g} /s",
+    )
 
 
 def smallest_inertia(robot: Robot, frame: str, q: npt.ArrayLike | None = None) -> Array:

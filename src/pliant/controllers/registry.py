@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pliant.controllers.advice import advise, sentences, smallest_inertia
+from pliant.controllers.advice import advise, advise_damping, sentences, smallest_inertia
 from pliant.controllers.attractor import Law
 from pliant.controllers.config import OperationalSpaceConfig, StackConfig
 from pliant.controllers.damping import Damping
 from pliant.controllers.operational_space import OperationalSpace
 from pliant.controllers.presets import STIFF_STACK
 from pliant.controllers.stack import Stack, needs_of_law
-from pliant.controllers.suggest import suggest_operational_space, suggest_stack
+from pliant.controllers.suggest import (
+    OPERATIONAL_SPACE_RULES,
+    STACK_RULES,
+    suggest_operational_space,
+    suggest_stack,
+)
 from pliant.entries import ControllerEntry
 from pliant.interfaces import Needs
 from pliant.robot import Robot
@@ -36,9 +41,16 @@ def build_operational_space(robot: Robot, config: OperationalSpaceConfig, period
     return OperationalSpace(robot, **config.model_dump())
 
 
-def advise_stack(robot: Robot, config: StackConfig, period: float) -> tuple[str, ...]:
-    """Warnings about a stack on a robot at its home, sampled at a period in s."""
-    found: list[str] = []
+def advise_stack(robot: Robot, config: StackConfig, period: float, late: float | None = None) -> tuple[str, ...]:
+    """Warnings about a stack on a robot at its home.
+
+    Args:
+        robot: as believed.
+        config: of the stack.
+        period: s, of control.
+        late: s, period and delays of the loop; None: the period.
+    """
+    found = list(advise_damping(config.motion_damping, period if late is None else late))
     for task in config.frame_tasks():
         inertia = smallest_inertia(robot, task.frame)[: task.axes]
         advices = sentences(advise(task.tuning, period, inertia, shape=task.shape))
@@ -56,11 +68,12 @@ def _stack(name: str, law: Law, summary: str) -> ControllerEntry[StackConfig]:
         summary,
         default,
         build_stack,
-        advise_stack,
+        lambda robot, config, believed: advise_stack(robot, config, believed.period, believed.late),
         family="stack",
         guarantees=_PASSIVE if law is Law.CAPPED else "–",
         needs=lambda config: needs_of_law(config.law),
         suggest=suggest_stack,
+        rules=STACK_RULES,
         fixed={"law": law},
     )
 
@@ -88,6 +101,7 @@ CONTROLLERS: Mapping[str, ControllerEntry[Any]] = {
             regulates_force=True,
             needs=lambda config: Needs(posture=True, wrench=config.force_integral > 0.0),
             suggest=suggest_operational_space,
+            rules=OPERATIONAL_SPACE_RULES,
         ),
     )
 }

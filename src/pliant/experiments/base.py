@@ -16,6 +16,7 @@ from pliant.experiments.case import C, Case, Row, row_runs
 from pliant.experiments.parameter_search import ParameterSearch
 from pliant.experiments.result import Result as Result
 from pliant.experiments.row_keys import refuse_row_keys
+from pliant.rules import Suggestion
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots.style import save
 from pliant.telemetry.summary import Metric
@@ -94,8 +95,8 @@ class Study(ABC, Generic[C]):
         metrics, case = self.metrics(config, log), self.cases.get(config.case)
         return metrics if case is None else case.beside(config, metrics)
 
-    def suggested(self, config: C) -> Mapping[str, tuple[float, str]]:
-        """Key → value and unit of what follows from the rest of a configuration where it says nothing."""
+    def suggested(self, config: C) -> Mapping[str, Suggestion]:
+        """Key → what follows from the rest of a configuration where it says nothing."""
         return {}
 
     def verdict(self, config: C, metrics: Sequence[Metric]) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pydantic import BaseModel
@@ -13,10 +13,13 @@ from pydantic_core import to_jsonable_python
 
 from pliant.entries import ControllerConfig
 from pliant.experiments.choice import Choice
-from pliant.quantity import unit_of
+from pliant.quantity import assumed_of, unit_of
+from pliant.rules import Rule, Suggestion, rule_of
 from pliant.wiring.registry import find_controller
 
 _LONGEST = 60  # characters
+SUGGESTED = "suggested"
+"""origin of what follows from robot and task"""
 _UNKNOWN = object()
 _CONTROL = "control"
 """table of a configuration that changes the controller's parameters"""
@@ -31,7 +34,9 @@ class Origin:
     value: Any
     unit: str
     origin: str
-    """a file, an option, "default", "suggested" (by the controller, for this robot and task), or the case"""
+    """a file, an option, the case, "default", "assumed" with what of, or "suggested" (for this robot and task)"""
+    rule: Rule | None = None
+    """of what is suggested"""
 
     @property
     def shown(self) -> str:
@@ -49,27 +54,38 @@ def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]
     """
     config = choice.config
     found = [
-        _origin(choice, path, value, unit_of(about), default, choice.base)
+        _origin(choice, path, value, about, default, choice.base)
         for path, value, about, default in leaves(config)
         if path[0] != _CONTROL
     ]
-    found += [Origin(key, *value, "suggested") for key, value in choice.study.suggested(config).items()]
+    found = _with_suggestions(found, choice.study.suggested(config))
     if parameters is None:
         return found
     above = (_CONTROL, config.controller) if config.control_by_name else (_CONTROL,)
-    default = find_controller(config.controller).default
-    return found + [
-        _origin(choice, (*above, *path), value, unit_of(about), usual, "suggested")
-        for path, value, about, usual in leaves(parameters, default)
+    entry = find_controller(config.controller)
+    for path, value, about, usual in leaves(parameters, entry.default):
+        row = _origin(choice, (*above, *path), value, about, usual, SUGGESTED)
+        rule = rule_of(entry.rules, ".".join(path)) if row.origin == SUGGESTED else None
+        found.append(replace(row, rule=rule))
+    return found
+
+
+def _with_suggestions(found: list[Origin], suggested: Mapping[str, Suggestion]) -> list[Origin]:
+    """The rows, those that say nothing replaced by what is suggested for them."""
+    rows = [Origin(key, one.value, one.unit, SUGGESTED, one.rule) for key, one in suggested.items()]
+    return [one for one in found if one.key not in suggested or one.value is not None] + [
+        row for row in rows if all(one.key != row.key or one.value is None for one in found)
     ]
 
 
-def _origin(choice: Choice, path: tuple[str, ...], value: Any, unit: str, default: Any, else_: str) -> Origin:
-    key = ".".join(path)
+def _origin(choice: Choice, path: tuple[str, ...], value: Any, about: FieldInfo, default: Any, else_: str) -> Origin:
+    key, unit = ".".join(path), unit_of(about)
     for name, values in reversed(choice.layers):
         if _gives(values, path):
             return Origin(key, value, unit, name)
-    return Origin(key, value, unit, "default" if value == default else else_)
+    assumed = assumed_of(about)
+    usual = f"assumed: {assumed}" if assumed else "default"
+    return Origin(key, value, unit, usual if value == default else else_)
 
 
 def _gives(values: Any, path: tuple[str, ...]) -> bool:

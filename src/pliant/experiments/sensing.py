@@ -5,6 +5,12 @@ from __future__ import annotations
 from pliant.estimation import SurfaceFitConfig
 from pliant.tasks.estimation import Estimation
 from pliant.wiring.estimators import Load, SensorFilters
+from pliant.wiring.noise import Noise
+
+
+def noise_of(keys: Estimation) -> Noise:
+    """As it is assumed."""
+    return Noise(keys.noise_position, keys.noise_velocity, keys.noise_force)
 
 
 def sensing_of(
@@ -25,6 +31,7 @@ def sensing_of(
         torque=keys.torque,
         joint_memory=joint_memory if keys.joint_memory is None else keys.joint_memory,
         observer_gain=keys.observer_gain,
+        noise=noise_of(keys),
         acceleration_cutoff=keys.acceleration_cutoff,
         changing=keys.changing,
         tare=keys.tare,

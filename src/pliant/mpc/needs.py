@@ -13,6 +13,7 @@ from pliant.mpc.config import Compensation, Contact, MpcConfig
 from pliant.mpc.costs import PhaseCosts, Term
 from pliant.mpc.make_problem import task_inertia
 from pliant.robot import Robot
+from pliant.rules import Rule
 
 _POSTURE_SHARE = 0.05
 """factor on the default posture cost, for tasks without phases or posture"""
@@ -22,6 +23,46 @@ _BY_CONTACT = {
     "free": PhaseCosts(translation=_POSITION),
     "contact": PhaseCosts(contact=True, translation=_POSITION.model_copy(update={"activation": (1.0, 1.0, 0.0)})),
 }
+
+_SEARCHED = (
+    "the preset's: `tuned` where the task has delays, else `perfect`",
+    "`pliant study polishing --tune CONTROLLER --trials 16`, [FFMPC] sec. VI as a start",
+)
+MPC_RULES = (
+    Rule("frame", "the first frame of the task", "the task"),
+    Rule("period", "the period of control, the controller's own at least", "the task's `simulation.period`"),
+    Rule("gravity", "on where the robot does not compensate gravity by itself", "the task's `compensates`"),
+    Rule("phase_by", "the phase's name where the task has phases, else contact as it is felt", "the task"),
+    Rule(
+        "phases.*",
+        "the preset's for phases of the same name; else its last phase with contact, or its first without; where axes"
+        " differ, a position of 1000 /m² on each that moves, and the force's cost on each that presses or yields",
+        "[FFMPC] sec. VI-A has such phases; the task's `modes`",
+    ),
+    Rule(
+        "contact.stiffness",
+        "the believed one of the surface, half of Λ/dt² at most; where it is estimated online, the start of 3e4 N/m or"
+        " the believed one if that is more",
+        "the exponential step of the force is good up to Λ/dt²; a model that is too soft makes the force loop too fast",
+    ),
+    Rule(
+        "contact.damping", "the believed one of the surface, where it is not estimated", "the task's `surface.damping`"
+    ),
+    Rule("contact.axes", "those of the believed surface, which turn along a path", "the task's `surface`"),
+    Rule("contact.normal", "that of the believed surface at its top", "the task's `surface`"),
+    Rule(
+        "contact.dimension", "3 where a force is asked for beside the axis that presses, else 1", "the task's `modes`"
+    ),
+    Rule("contact.integrator", "exponential, which bears a stiff contact at the horizon's step", "docs/mpc_derivation"),
+    Rule("compensation.*_delay", "as the task assumes it", "the task's `timing`"),
+    Rule(
+        "compensation.averaging", "the default, rounded to whole periods of control", "the task's `simulation.period`"
+    ),
+    Rule("contact.*", *_SEARCHED),
+    Rule("costs.posture.*", "the preset's; 0.05 of it where phases mean nothing", _SEARCHED[1]),
+    Rule("costs.*", *_SEARCHED),
+)
+"""of `suggest_mpc`, and of the presets that it starts from"""
 
 
 def needs_of(config: MpcConfig) -> Needs:
@@ -70,13 +111,18 @@ def suggest_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> MpcConfi
 def _as_stiff(robot: Robot, config: MpcConfig, believed: Believed) -> Contact:
     """With the believed stiffness and damping, where the force is a state and they are not estimated online.
 
-    At most half of the largest stiffness of the exponential integrator, Λ/dt².
+    At most half of the largest stiffness of the exponential integrator, Λ/dt². Where they are estimated, a stiffness
+    beyond the configured one is what the estimation starts from.
     """
-    spring = config.predictive_model.force_state and not config.compensation.environment
-    if not spring or believed.stiffness is None or believed.damping is None:
+    if not config.predictive_model.force_state or believed.stiffness is None or believed.damping is None:
+        return config.contact
+    first = config.contact.stiffness[0]
+    if config.compensation.environment and believed.stiffness <= first:
         return config.contact
     placed = config.model_copy(update={"frame": believed.frames[0]})
     largest = 0.5 * float(np.min(task_inertia(placed, robot.model, robot.home))) / config.dt**2
+    if config.compensation.environment:
+        return config.contact.model_copy(update={"stiffness": (max(first, min(believed.stiffness, largest)),)})
     update = {
         "stiffness": (min(believed.stiffness, largest),),
         "damping": (believed.damping,),

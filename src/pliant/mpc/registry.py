@@ -8,7 +8,7 @@ from typing import Any
 
 import pinocchio as pin
 
-from pliant.entries import ControllerEntry
+from pliant.entries import Believed, ControllerEntry
 from pliant.errors import ConfigError
 from pliant.interfaces import Controller, Needs
 from pliant.mpc.axis_costs import with_felt_phases
@@ -17,7 +17,7 @@ from pliant.mpc.controller import MpcController
 from pliant.mpc.costs import Term
 from pliant.mpc.defaults import ClassicalMpc, ForceFeedbackMpc, OffsetFreeMpc, TorqueFeedbackMpc, ViscoElasticMpc
 from pliant.mpc.modelled_force import ModelledForceMpc
-from pliant.mpc.needs import needs_of, suggest_mpc
+from pliant.mpc.needs import MPC_RULES, needs_of, suggest_mpc
 from pliant.robot import Robot
 
 
@@ -51,7 +51,7 @@ def _entry(
     name: str,
     summary: str,
     default: MpcConfig,
-    advise: Callable[[Robot, MpcConfig, float], tuple[str, ...]],
+    advise: Callable[[Robot, MpcConfig, Believed], tuple[str, ...]],
     build: Callable[[Robot, MpcConfig, float], Controller[Any]] = build_mpc,
     needs: Callable[[MpcConfig], Needs] = needs_of,
 ) -> ControllerEntry[MpcConfig]:
@@ -66,11 +66,12 @@ def _entry(
         regulates_force=True,
         needs=needs,
         suggest=suggest_mpc,
+        rules=MPC_RULES,
         filter=with_felt_phases,
     )
 
 
-def advise_mpc(robot: Robot, config: MpcConfig, period: float) -> tuple[str, ...]:
+def advise_mpc(robot: Robot, config: MpcConfig, believed: Believed) -> tuple[str, ...]:
     """Warning about slow convergence: force costs along a surface on which the predicted contact slides."""
     if config.contact.friction is None:
         return ()

@@ -11,22 +11,30 @@ from pliant.estimation.joint_acceleration import JointAcceleration
 from pliant.estimation.momentum_observer import GAIN
 from pliant.quantity import quantity
 
+_NOISE = "sensors of [FFMPC] sec. VI-B; measure yours at rest"
+
 
 class Estimation(Config):
     """Estimation between sensors and controller."""
 
+    noise_position: float = quantity(
+        1e-3, "rad", "standard deviation of the joint positions' noise", assumed=_NOISE, ge=0.0, le=1.0
+    )
+    noise_velocity: float = quantity(1e-3, "rad/s", "the same of the joint velocities", assumed=_NOISE, ge=0.0, le=10.0)
+    noise_force: float = quantity(0.01, "N", "the same of the force sensor", assumed=_NOISE, ge=0.0, le=100.0)
     joint_memory: float | None = quantity(
         None,
         "s",
-        "of the joint state filter; 0: no filter; none: 0.3 s for controllers that compensate, on paths, and in"
-        " lists of phases that are timed or have delays, else 0",
+        "of the joint state filter; 0: no filter; none: 0.3 noise_position / noise_velocity, 3 s at most, for"
+        " controllers that compensate, on paths, and in lists of phases that are timed or have delays, else 0",
         ge=0.0,
         le=100.0,
     )
-    observer_gain: float = quantity(
-        GAIN,
+    observer_gain: float | None = quantity(
+        None,
         "rad/s",
-        "of the momentum observer, which runs where the controller asks for a disturbance",
+        f"k of the momentum observer, which runs where the controller asks for a disturbance; none: {GAIN:g}, less"
+        " where its noise k M noise_velocity would exceed 1 % of a joint's torque limit",
         gt=0.0,
         le=1e4,
     )

@@ -168,20 +168,20 @@ class Phases(Config):
     """Approach and retreat."""
 
     stand_off: float = quantity(_USUAL.stand_off, "m", "over the surface, where the run starts", gt=0.0, le=1.0)
-    approach_speed: float = quantity(_USUAL.approach_speed, "m/s", "down to the surface, until contact", gt=0.0, le=1.0)
+    approach_speed: float | None = quantity(
+        None,
+        "m/s",
+        f"down to the surface, until contact; none: {_USUAL.approach_speed}, less where the surface is so stiff that"
+        " the landing would press harder than the path",
+        gt=0.0,
+        le=1.0,
+    )
     search: float = quantity(
         _USUAL.search, "m", "above and below the believed surface, within which contact is searched", gt=0.0, le=0.5
     )
     press: float = quantity(_USUAL.press, "s", "in which the first force of the path is reached", gt=0.0, le=60.0)
     release: float = quantity(_USUAL.release, "s", "in which the last force goes to zero, at rest", gt=0.0, le=60.0)
     leave: float = quantity(_USUAL.leave, "s", "in which the tool is lifted by stand_off at the end", gt=0.0, le=60.0)
-
-
-class TimingConfig(Config):
-    """Delays of readings and commands that the controller assumes; `truth.imperfections` has the true ones."""
-
-    sensing_delay: float = quantity(1e-3, "s", "delay of a reading", ge=0.0, le=0.1)
-    computation_delay: float = quantity(5e-3, "s", "from a reading to the effect of its command", ge=0.0, le=0.1)
 
 
 class TruthConfig(Config):

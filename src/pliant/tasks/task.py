@@ -22,12 +22,12 @@ from pliant.tasks.parts import (
     Pose,
     Sensor,
     Simulation,
-    TimingConfig,
     ToolConfig,
     TruthConfig,
 )
 from pliant.tasks.phase import ImpedanceConfig, Phase, PlannerConfig, Thing, TouchingLink
 from pliant.tasks.surface_config import SurfaceConfig
+from pliant.tasks.timing import TimingConfig
 
 FORMAT = 1
 _OF_A_PATH = {"surface": SurfaceConfig(), "path": PathConfig(), "force": Force(), "phases": Phases()}

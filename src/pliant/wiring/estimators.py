@@ -25,18 +25,16 @@ from pliant.estimation import (
     Tare,
     WrenchEstimator,
 )
-from pliant.estimation.momentum_observer import GAIN
 from pliant.interfaces import Estimator, Needs
 from pliant.robot import Robot
 from pliant.surfaces import PlaneSurface
+from pliant.wiring.noise import Noise
 
-_JOINT_MEMORY = 0.3  # s
 _SLIDING = 0.02  # m/s; faster than that, an unknown tilt looks like a soft table
 _FIT_CUTOFF = 30.0  # Hz
+_STIFF = 3e4  # N/m; where more is believed, a softer estimate is not used: tilt and noise look like a soft contact
 _REACH = 0.01  # m; as far as a soft estimate holds where the stiffness changes
-_CHANGING = FitConfig(
-    cutoff=_FIT_CUTOFF, drift=8.0, memory=150.0, noise_depth=2.3e-5, least_force=0.0, least_motion=0.0
-)
+_CHANGING = FitConfig(cutoff=_FIT_CUTOFF, drift=8.0, memory=150.0, least_force=0.0, least_motion=0.0)
 """for a stiffness that changes: all samples count, so that old ones are forgotten with time; the noise is 6 µm after
 both filters, as measured after the joint state filter on an arm with the flaws of [FFMPC] sec. VI-B"""
 
@@ -60,9 +58,11 @@ class SensorFilters:
     torque: Literal["sensor", "model"] = "sensor"
     """source of the joint torques"""
     joint_memory: float | None = None
-    """s, of the joint state filter; 0: none; None: 0.3 s for controllers that need positions without noise"""
-    observer_gain: float = GAIN
-    """rad/s, of the momentum observer"""
+    """s, of the joint state filter; 0: none; None: what suits the noise, for controllers that need positions without"""
+    observer_gain: float | None = None
+    """rad/s, of the momentum observer; None: what suits the noise"""
+    noise: Noise = field(default_factory=Noise)
+    """as it is assumed"""
     carried: Mapping[str, CarriedMass] = field(default_factory=dict[str, CarriedMass])
     """sensor → what it is known to carry"""
     contact_frames: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -101,7 +101,7 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Senso
     felt = _filtered(felt, robot, believed, sensing)
     memory = sensing.joint_memory
     if memory is None:
-        memory = _JOINT_MEMORY if needs.calm else 0.0
+        memory = sensing.noise.joint_memory() if needs.calm else 0.0
     if memory > 0.0:
         felt = JointStateFilter(felt, memory)
     if sensing.surface is not None and believed.presses is not None and believed.surface is not None:
@@ -110,18 +110,28 @@ def estimator_for(needs: Needs, robot: Robot, believed: Believed, sensing: Senso
         frame = believed.presses or believed.frames[0]
         if sensing.changing:
             kept = math.inf if believed.stiffness is None else believed.stiffness
-            felt = EnvironmentEstimator(
-                felt, robot, frame, period, normal=normal, config=_CHANGING, reach=_REACH, kept=kept
-            )
+            fit = _CHANGING.model_copy(update={"noise_depth": sensing.noise.depth(memory)})
+            felt = EnvironmentEstimator(felt, robot, frame, period, normal=normal, config=fit, reach=_REACH, kept=kept)
         else:
-            fit = FitConfig(cutoff=_FIT_CUTOFF)
-            felt = EnvironmentEstimator(felt, robot, frame, period, normal=normal, config=fit, sliding=_SLIDING)
+            fit = FitConfig(cutoff=_FIT_CUTOFF, least_force=sensing.noise.least_force(_FIT_CUTOFF, period))
+            known = believed.stiffness or 0.0
+            felt = EnvironmentEstimator(
+                felt,
+                robot,
+                frame,
+                period,
+                normal=normal,
+                config=fit,
+                sliding=_SLIDING,
+                reach=0.0 if known > _STIFF else None,
+                kept=known if known > _STIFF else math.inf,
+            )
     if needs.disturbance == "none":
         return felt
     return MomentumObserver(
         felt,
         robot,
-        gain=sensing.observer_gain,
+        gain=sensing.noise.observer_gain(robot) if sensing.observer_gain is None else sensing.observer_gain,
         contact=needs.disturbance,
         normal=normal,
         compensation=believed.compensation,

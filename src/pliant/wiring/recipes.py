@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -13,12 +14,13 @@ from pliant.controllers.config import FrameTaskConfig, StackConfig, TranslationC
 from pliant.controllers.profiles import Shape
 from pliant.controllers.registry import advise_stack, build_stack
 from pliant.controllers.stack import Stack, needs_of_law
-from pliant.controllers.suggest import suggest_stack
+from pliant.controllers.suggest import STACK_RULES, suggest_stack
 from pliant.entries import Believed, ControllerConfig, ControllerEntry
 from pliant.interfaces import Needs, ReferenceSource
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
 from pliant.robot import Robot
+from pliant.rules import Rule
 from pliant.signals import ImpedanceTuning
 
 _PROMPT = 1e-3  # s; a loop that is later than this is a late one
@@ -28,6 +30,31 @@ _DAMPED_PROMPT = 30.0  # 1/s; damping of the tool on its contact in a prompt loo
 _SLOWER = 0.18
 _SOFTEST = 3e3  # N/m; a contact of which nothing is believed
 _FLOOR = 0.6  # of the stiffness of contact and impedance in series: the lower bound of K̂ in a late loop
+_NOISES = 6.0  # standard deviations of the filtered force at which contact begins
+_RULES = (
+    Rule(
+        "impedance.motion_damping",
+        "0.4 / (period + delays) in a loop later than 1 ms, else 30 /s where the task has no impedance of its own",
+        "damping of a mass with a delay T is stable up to π/2 / T",
+    ),
+    *(rule.under("impedance") for rule in STACK_RULES if rule.keys != "joint_damping"),
+    Rule(
+        "exploration.gain",
+        "0.18 / (period + delays), 45 /s at most",
+        "measured: 0.4 / T is unstable on a contact of 80 rad/s with damping ratio 0.5",
+    ),
+    Rule("exploration.seek", "on where phases say when to touch", "the task"),
+    Rule(
+        "exploration.stiffness_floor",
+        "beyond 1 ms: 0.6 of K_0 and the believed stiffness in series, 3e3 N/m where nothing is believed",
+        "a late force makes each contact seem soft within the window of K̂",
+    ),
+    Rule(
+        "exploration.contact_o*",
+        "1 N, or six standard deviations of the filtered force; half of it where contact ends",
+        "white noise σ is σ √(T / (2 τ + T)) after a filter of τ",
+    ),
+)
 
 
 class HapticConfig(ControllerConfig):
@@ -52,8 +79,8 @@ def _build(robot: Robot, config: HapticConfig, period: float) -> Stack:
     return build_stack(robot, config.impedance, period)
 
 
-def _advise(robot: Robot, config: HapticConfig, period: float) -> tuple[str, ...]:
-    return advise_stack(robot, config.impedance, period)
+def _advise(robot: Robot, config: HapticConfig, believed: Believed) -> tuple[str, ...]:
+    return advise_stack(robot, config.impedance, believed.period, believed.late)
 
 
 def _yields(config: HapticConfig) -> bool:
@@ -77,7 +104,7 @@ def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticCo
     """
     exploration, impedance = config.exploration, suggest_stack(robot, config.impedance, believed)
     if exploration is not None:
-        late = believed.period + believed.sensing_delay + believed.computation_delay
+        late = believed.late
         changes: dict[str, object] = {
             "gain": min(exploration.gain, _SLOWER / late),
             "seek": exploration.seek or any(believed.phases.values()),
@@ -87,8 +114,17 @@ def _suggest(robot: Robot, config: HapticConfig, believed: Believed) -> HapticCo
         impedance = impedance.model_copy(update={"motion_damping": damping})
         if late > _PROMPT:
             changes["stiffness_floor"] = max(exploration.stiffness_floor, _floor(impedance, believed))
+        heard = _NOISES * _filtered_noise(exploration, believed)
+        if heard > exploration.contact_on:
+            changes |= {"contact_on": heard, "contact_off": max(0.5 * heard, exploration.contact_off)}
         exploration = exploration.model_copy(update=changes)
     return config.model_copy(update={"impedance": impedance, "exploration": exploration})
+
+
+def _filtered_noise(exploration: ExplorationConfig, believed: Believed) -> float:
+    """N: standard deviation of the force that begins a contact."""
+    passed = believed.period / (2.0 * exploration.contact_filter + believed.period)
+    return believed.noise_force * math.sqrt(passed)
 
 
 def _floor(impedance: StackConfig, believed: Believed) -> float:
@@ -136,6 +172,7 @@ def _entry(
         yields=_yields,
         needs=_needs,
         suggest=_suggest,
+        rules=_RULES,
         fixed=fixed,
         filter=_filter,
         filter_channels=_channels,

@@ -94,7 +94,7 @@ def wired(entry: ControllerEntry[Any], parameters: ControllerConfig, offer: Offe
         duration=offer.duration,
         warnings=(
             *_unregulated(entry, core, believed),
-            *entry.advise(robot, parameters, believed.period),
+            *entry.advise(robot, parameters, believed),
             *offer.warnings,
         ),
         parameters=parameters,

@@ -143,6 +143,7 @@ class HapticCaseConfig(CaseConfig):
             compensation=self.hardware.compensation,
             sensing_delay=self.hardware.force_delay,
             computation_delay=self.hardware.command_delay,
+            noise_force=self.estimation.noise_force,
             tunings={self.frame: self.impedance.tuning()},
         )
 

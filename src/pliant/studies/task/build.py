@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
+
+import numpy as np
 
 from pliant.estimation import SurfaceFitConfig
 from pliant.experiments.model_error import with_mass_error
@@ -19,6 +21,7 @@ from pliant.simulation.seeding import generator
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.file_path import slowed
 from pliant.studies.task.geometry import force_of, laid_out
+from pliant.studies.task.landing import approach_speed, usual_approach
 from pliant.studies.task.limits import refuse_beyond, refuse_outside, run_limits
 from pliant.studies.task.sensor import known_load
 from pliant.studies.task.world import plant_of, true_surface
@@ -29,6 +32,7 @@ from pliant.wiring.experiment import Experiment
 from pliant.wiring.wire import Offer, wired
 
 _REMEDY = "move it by surface.pose or path.at: `pliant task check` of the same task tries which move would help"
+_FORCES = 200  # places at which the force of a file is looked at
 _SURFACE_CHANNELS = tuple(Channel(name, unit) for name, unit in CHANNELS.items())
 
 
@@ -41,6 +45,8 @@ class Planned:
     """as it is believed"""
     path: Toolpath
     references: SurfaceTask
+    approach_speed: float
+    """m/s"""
 
 
 def planned(case: TaskCase) -> Planned:
@@ -58,20 +64,36 @@ def planned(case: TaskCase) -> Planned:
 def _planned(text: str) -> Planned:
     case = TaskCase.model_validate_json(text)
     robot, surface, path = laid_out(case, case.robot)
-    settings = SurfaceTaskSettings(**case.phases.model_dump(), spins=case.path.spins)
     refuse_path(case, path)
+    phases = case.phases.model_dump(exclude={"approach_speed"})
+    usual = case.phases.approach_speed or usual_approach(case)
+    settings = SurfaceTaskSettings(**phases, approach_speed=usual, spins=case.path.spins)
+    references = _references(case, robot, path, settings)
+    speed = approach_speed(case, robot, path, _largest_force(case, path), references.start)
+    if speed != usual:
+        references = _references(case, robot, path, replace(settings, approach_speed=speed))
+    return Planned(robot, surface, path, references, speed)
+
+
+def _references(case: TaskCase, robot: Robot, path: Toolpath, settings: SurfaceTaskSettings) -> SurfaceTask:
     try:
-        references = surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
+        return surface_task(robot, case.tool.frame, path, force_of(case), settings, robot.home)
     except UnreachableError as error:
         line = "" if error.place is None else path.told_of(error.place)
         raise UnreachableError(f"{error}{line}; {_REMEDY}", error.time, error.place) from None
-    return Planned(robot, surface, path, references)
+
+
+def _largest_force(case: TaskCase, path: Toolpath) -> float:
+    """N, along the path."""
+    if path.force is None:
+        return case.force.largest
+    return max(float(path.force.at(time).value[0]) for time in np.linspace(0.0, path.duration, _FORCES))
 
 
 def refuse_path(case: TaskCase, path: Toolpath) -> None:
     """Raises ConfigError where the task asks for more than its limits allow. Rows of a file were refused when the path
     was laid out."""
-    speeds = [("phases.approach_speed", case.phases.approach_speed)]
+    speeds = [("phases.approach_speed", case.phases.approach_speed or usual_approach(case))]
     if path.rows is None or not path.rows.paced_by:
         speeds.insert(0, ("path.speed", case.path.speed))
     refuse_beyond(case.limits, [("force.normal", case.force.largest)] if path.force is None else [], speeds)

@@ -168,6 +168,7 @@ def _believed(
         compensation=case.compensates,
         sensing_delay=case.timing.sensing_delay,
         computation_delay=case.timing.computation_delay,
+        noise_force=case.estimation.noise_force,
         phases=sought if any(sought.values()) else {},
         tunings={} if tuning is None else {frames[0]: tuning},
     )

@@ -18,6 +18,7 @@ from pliant.studies.task.build_list import listed
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.drawn_case import as_drawn
 from pliant.studies.task.geometry import force_of, laid_out
+from pliant.studies.task.landing import usual_approach
 from pliant.studies.task.list_motion import Listed, planner_in_time, with_curves
 from pliant.studies.task.timed import timed_source
 from pliant.studies.task.world import true_surface
@@ -35,7 +36,8 @@ def checked_path(case: TaskCase, drawn: int = CHECKED_DRAWS) -> ReachCheck:
     robot, surface, path = laid_out(case, case.robot)
     refuse_path(case, path)
     phases = case.phases
-    course = course_of(path, force_of(case), phases.stand_off, phases.approach_speed, phases.leave)
+    speed = phases.approach_speed or usual_approach(case)
+    course = course_of(path, force_of(case), phases.stand_off, speed, phases.leave)
     true = [true_surface(one, surface, path).geometry for one in runs]
     return check_reach(
         robot,

@@ -64,6 +64,7 @@ class TaskCase(TaskParts, CaseConfig):
             compensation=self.compensates,
             sensing_delay=self.timing.sensing_delay,
             computation_delay=self.timing.computation_delay,
+            noise_force=self.estimation.noise_force,
             phases=SurfaceTaskSettings().touches,
         )
 

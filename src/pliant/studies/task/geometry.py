@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from pliant.errors import ConfigError
+from pliant.errors import ConfigError, UnknownFrameError
 from pliant.experiments.model_error import with_masses
 from pliant.references.postures.inverse_kinematics import Target, joint_box
 from pliant.references.postures.posture import freedom, mink_solver
@@ -27,6 +27,11 @@ _HEIGHT = (0.07, 0.28, 0.5)  # of that reach, over the base
 _NEARER = ((0.2, 0.3, 0.4, 0.5), (-0.15, 0.0, 0.07, 0.28))  # the same for an arm that is short beside its tool
 _AROUND = (-0.05, 0.0, 0.05)  # m, before and behind a place, where the tool must do as well
 _LONGEST = 200.0  # m of a pattern
+_UPRIGHT = 5  # joints that it takes to hold a tool upright at a place
+WITHOUT_FLANGE = (
+    'a leg presses with a frame of its own, in a task of phases with moves = "foot" (`pliant list tasks`: floor, ball)'
+)
+"""what to do with a robot that cannot hold a tool upright on a surface"""
 
 
 def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
@@ -37,7 +42,10 @@ def robot_of(task: TaskParts, source: str, unknown_mass: float = 0.0) -> Robot:
     """
     made = task.tool.tool(unknown_mass)
     locked = None if task.locked is None else {joint: math.radians(angle) for joint, angle in task.locked.items()}
-    arm = Robot.load(source, locked=locked, tool=made, rotor_inertia=task.rotor_inertia)
+    try:
+        arm = Robot.load(source, locked=locked, tool=made, rotor_inertia=task.rotor_inertia)
+    except UnknownFrameError as error:
+        raise UnknownFrameError(f"the tool of this task is held at tool.parent: {error}; {WITHOUT_FLANGE}") from None
     return weighed(task, arm.touching_with(made))
 
 
@@ -128,6 +136,7 @@ def good_place(robot: Robot, frame: str, normal: Array, curvature: float) -> Arr
     raise ConfigError(
         f"no place was found before robot {robot.name!r} where its tool can stand upright on the surface: give one by"
         " surface.pose, for example surface.pose.xyz=[0.5,0,0.1]"
+        + (f"; {WITHOUT_FLANGE}" if robot.n < _UPRIGHT else "")
     )
 
 

@@ -11,8 +11,11 @@ import numpy as np
 
 from pliant.references.placed_phases import PlacedPhase
 from pliant.references.planners.superposition import MotionLimits
+from pliant.references.surface_task import SurfaceTaskSettings
+from pliant.references.toolpaths.toolpath import Toolpath
 from pliant.rigid_body import mass_along
 from pliant.robot import Robot
+from pliant.rules import Rule, Suggestion
 from pliant.spatial import Array
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.pressed import pressed_along
@@ -20,6 +23,15 @@ from pliant.tasks.phase import Phase, Thing
 
 _LEAST_WAY = 1e-3  # m towards a contact; what goes less far stays where it is
 _SLOWEST = 2e-3  # m/s
+_SOURCE = "a mass that meets a spring, driven on by a loop that is T late; docs/tasks"
+_SPEED = Rule(
+    "phase.*.limit.speed", "F / √(k m + k² T²), F the phase's force, k of what it meets, m of the arm", _SOURCE
+)
+_PRESS = Rule("phase.*.press", "2π √(m / k) + T", _SOURCE)
+APPROACH = Rule(
+    "phases.approach_speed", "0.05 m/s, or F / √(k m + k² T²) if that is less, F the largest force of the path", _SOURCE
+)
+RULES = (APPROACH, _SPEED, _PRESS)
 
 
 class Touch(NamedTuple):
@@ -75,6 +87,31 @@ def gentle(touch: Touch, mass: float, late: float, force: float) -> tuple[float,
     return max(min(speeds), _SLOWEST), 2.0 * math.pi * math.sqrt(mass / k) + late
 
 
+def approach_speed(case: TaskCase, robot: Robot, path: Toolpath, force: float, start: Array) -> float:
+    """m/s, of the approach to a path: what the file says; else the usual one, or what lands gently, if that is less.
+
+    Args:
+        case: the task.
+        robot: as believed.
+        path: on the believed surface.
+        force: N, the largest one along the path, that the landing is to keep to.
+        start: (n,) rad, at the start of the run.
+    """
+    if case.phases.approach_speed is not None:
+        return case.phases.approach_speed
+    normal = path.task.at(0.0).rotation[:, 2]
+    mass = mass_along(robot.model, start, robot.frame_id(case.tool.frame), normal)
+    late = case.simulation.period + case.timing.sensing_delay + case.timing.computation_delay
+    touch = Touch(case.surface.stiffness, case.surface.damping)
+    slowest = gentle(touch, mass, late, force)[0] if force > 0.0 else math.inf
+    return min(usual_approach(case), slowest)
+
+
+def usual_approach(case: TaskCase) -> float:
+    """m/s, the largest that is chosen where the file says nothing."""
+    return min(SurfaceTaskSettings().approach_speed, case.limits.speed or math.inf)
+
+
 def landings(case: TaskCase, robot: Robot, all_placed: Sequence[PlacedPhase], start: Array) -> dict[str, GentleLanding]:
     """Phase → its gentle landing, for each that goes towards a contact: it asks for a force, and its target lies
     against that from where the phase begins. Args: start: (n,) rad, at the start of the run."""
@@ -108,14 +145,14 @@ def landed(case: TaskCase, all_placed: Sequence[PlacedPhase], known: Mapping[str
     return [_gentle(placed, phase, known.get(placed.name)) for placed, phase in both]
 
 
-def suggested_landings(case: TaskCase, known: Mapping[str, GentleLanding]) -> dict[str, tuple[float, str]]:
-    """Key → value and unit of what the file leaves to the rule."""
-    found: dict[str, tuple[float, str]] = {}
+def suggested_landings(case: TaskCase, known: Mapping[str, GentleLanding]) -> dict[str, Suggestion]:
+    """Key → what the file leaves to the rule."""
+    found: dict[str, Suggestion] = {}
     for name, phase in zip(case.phase_names(), case.phase, strict=True):
         if name in known and _speed(phase) is None:
-            found[f"phase.{name}.limit.speed"] = (round(known[name].speed, 4), "m/s")
+            found[f"phase.{name}.limit.speed"] = Suggestion(round(known[name].speed, 4), "m/s", _SPEED)
         if name in known and phase.press is None:
-            found[f"phase.{name}.press"] = (round(known[name].press, 4), "s")
+            found[f"phase.{name}.press"] = Suggestion(round(known[name].press, 4), "s", _PRESS)
     return found
 
 

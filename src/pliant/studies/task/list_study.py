@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pliant.experiments.base import Experiment, Result
 from pliant.references.reach.check import ReachCheck
+from pliant.rules import Suggestion
 from pliant.studies.task.build_list import build_list, listed
 from pliant.studies.task.check import CHECKED_DRAWS, checked_list
 from pliant.studies.task.config import TaskCase
@@ -35,14 +36,15 @@ class ListStudy(TaskStudy):
         made = listed(as_drawn(config))
         return Searched(made.robot, made.believed)
 
-    def suggested(self, config: TaskCase) -> Mapping[str, tuple[float, str]]:
+    def suggested(self, config: TaskCase) -> Mapping[str, Suggestion]:
         run = as_drawn(config)
-        return suggested_landings(run, listed(run).landings)
+        return {**super().suggested(config), **suggested_landings(run, listed(run).landings)}
 
     def about(self, config: TaskCase) -> Mapping[str, str]:
         run = as_drawn(config)
         told = [told_landing(run, name, one) for name, one in listed(run).landings.items()]
-        return {"landing": "; ".join(told)} if told else {}
+        landing = {"landing": "; ".join(told)} if told else {}
+        return {**super().about(config), **landing}
 
     def check_accept(self, config: TaskCase) -> None:
         check_accept_of_list(config)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pliant.experiments.base import Experiment, Result
 from pliant.references.reach.check import ReachCheck
+from pliant.rules import Suggestion
 from pliant.studies.task import draw
 from pliant.studies.task.build import build, planned
 from pliant.studies.task.check import CHECKED_DRAWS, checked_path
@@ -14,6 +15,7 @@ from pliant.studies.task.config import TaskCase
 from pliant.studies.task.drawn_case import as_drawn
 from pliant.studies.task.file_path import pace_of_file
 from pliant.studies.task.geometry import laid_out
+from pliant.studies.task.landing import APPROACH
 from pliant.studies.task.measure import WORST, TaskSignals, check_accept, measured, signals_of
 from pliant.studies.task.search import Searched
 from pliant.studies.task.task_study import TaskStudy
@@ -45,9 +47,13 @@ class PathStudy(TaskStudy):
         made = planned(config)
         return Searched(made.robot, config.believed(made.surface))
 
+    def suggested(self, config: TaskCase) -> Mapping[str, Suggestion]:
+        speed = Suggestion(round(planned(as_drawn(config)).approach_speed, 4), "m/s", APPROACH)
+        return {**super().suggested(config), APPROACH.keys: speed}
+
     def about(self, config: TaskCase) -> Mapping[str, str]:
         described = config.surface.geometry(Pose()).described
-        told = {"part": described} if described else {}
+        told = {**super().about(config), **({"part": described} if described else {})}
         if config.path.file is not None:
             run = as_drawn(config)
             pace = pace_of_file(run, laid_out(run, run.robot)[2])

@@ -13,11 +13,15 @@ from pliant.errors import ConfigError
 from pliant.experiments.base import Study
 from pliant.experiments.case import Case, Row, once, row_runs, seeded
 from pliant.experiments.parameter_search import ParameterSearch
+from pliant.experiments.sensing import noise_of
 from pliant.overlay import overlaid
 from pliant.references.reach.check import ReachCheck
+from pliant.rules import Suggestion
 from pliant.studies.task.check import CHECKED_DRAWS
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.search import Searched, search_of
+from pliant.tasks.timing import TimingConfig
+from pliant.wiring.noise import Noise, suited_to_noise
 from pliant.wiring.registry import find_controller
 
 _SEEDS = 3
@@ -68,13 +72,31 @@ class TaskStudy(Study[TaskCase]):
         config = merged(self.case(case or next(iter(self.cases))), {**changes, "controller": controller})
         return search_of(config, self.searched(config))
 
+    def suggested(self, config: TaskCase) -> Mapping[str, Suggestion]:
+        """What the assumed noise suggests for the estimators that the controller has."""
+        known = self.searched(config)
+        entry = find_controller(config.controller)
+        needs = entry.needs(config.controller_parameters(known.robot, known.believed))
+        suits = suited_to_noise(noise_of(config.estimation), known.robot)
+        used = {"estimation.joint_memory": needs.calm, "estimation.observer_gain": needs.disturbance != "none"}
+        return {key: one for key, one in suits.items() if used[key]}
+
     @abstractmethod
     def searched(self, config: TaskCase) -> Searched:
         """What a search over the controller's parameters starts from."""
 
     def about(self, config: TaskCase) -> Mapping[str, str]:
         """What → what is to be known of it before a run, in a sentence each."""
-        return {}
+        timing, noise = config.timing, noise_of(config.estimation)
+        told = {
+            f"readings {1e3 * timing.sensing_delay:g} ms old": timing.sensing_delay == TimingConfig().sensing_delay,
+            f"commands that act after {1e3 * timing.computation_delay:g} ms": (
+                timing.computation_delay == TimingConfig().computation_delay
+            ),
+            f"noise of {noise.position:g} rad, {noise.velocity:g} rad/s, {noise.force:g} N": noise == Noise(),
+        }
+        assumed = [text for text, usual in told.items() if usual]
+        return {"assumed": ", ".join(assumed) + " (timing, estimation: measure yours)"} if assumed else {}
 
     def refuse_unknown(self, config: TaskCase) -> None:
         """Raises ConfigError for names that a run or a row of `[sweep]` would refuse: of controllers, metrics, keys."""
