@@ -16,6 +16,7 @@ import pickle
 import signal
 import sys
 import threading
+import warnings
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -160,7 +161,9 @@ class _Worker:
         self.ready = False
         inherited = (self.pipe, *others) if method == "fork" else ()
         self._process = context.Process(target=_serve, args=(theirs, *inherited), daemon=True)
-        with _shielded():
+        with _shielded(), warnings.catch_warnings():
+            # Python 3.12 warns of system threads, too: those of BLAS, which begin anew in a fork
+            warnings.simplefilter("ignore", DeprecationWarning)
             self._process.start()
         theirs.close()  # its end is now the only one: the pipe ends with the process
 
