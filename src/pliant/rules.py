@@ -24,6 +24,11 @@ class Rule:
         return replace(self, keys=f"{key}.{self.keys}")
 
     @property
+    def of_many(self) -> bool:
+        """Whether it tells of a whole table."""
+        return self.keys.endswith("*")
+
+    @property
     def told(self) -> str:
         """In one line."""
         return f"{self.says} ({self.source})"

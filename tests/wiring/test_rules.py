@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import pliant
 from pliant.entries import Believed, ControllerEntry
 from pliant.experiments.choice import chosen
 from pliant.experiments.origins import SUGGESTED, Origin, leaves, origins
@@ -144,3 +145,17 @@ def test_a_noisy_force_sensor_begins_no_contact_by_its_noise(arm: Robot) -> None
         highest = max(highest, abs(felt))
     assert usual.contact_on < highest < rules.contact_on
     assert rules.contact_off < rules.contact_on
+
+
+def test_a_stiff_surface_is_landed_on_and_left() -> None:
+    """1e5 N/m, a late imperfect arm: a model that is too soft makes the first touch too hard."""
+    task = {"robot": "ur5e", "path": {"size": [0.04, 0.02]}, "force": {"along": "estimated"}}
+
+    def run(**more: Any) -> Any:
+        return pliant.run("wipe", controller="offset-free-mpc", surface={"stiffness": 1e5}, **task, **more)
+
+    made = run()
+    assert made.failure is None
+    assert made.metrics["force_error"].value < 0.7
+    soft = {"offset-free-mpc": {"contact": {"stiffness": [3e4]}}}
+    assert "limits.force was exceeded" in str(run(phases={"approach_speed": 0.05}, control=soft).failure)

@@ -18,6 +18,7 @@ from pliant.rules import Rule, Suggestion, rule_of
 from pliant.wiring.registry import find_controller
 
 _LONGEST = 60  # characters
+DEFAULT = "default"
 SUGGESTED = "suggested"
 """origin of what follows from robot and task"""
 _UNKNOWN = object()
@@ -36,7 +37,7 @@ class Origin:
     origin: str
     """a file, an option, the case, "default", "assumed" with what of, or "suggested" (for this robot and task)"""
     rule: Rule | None = None
-    """of what is suggested"""
+    """of what is suggested, or of a default that the rule leaves as it is"""
 
     @property
     def shown(self) -> str:
@@ -65,8 +66,9 @@ def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]
     entry = find_controller(config.controller)
     for path, value, about, usual in leaves(parameters, entry.default):
         row = _origin(choice, (*above, *path), value, about, usual, SUGGESTED)
-        rule = rule_of(entry.rules, ".".join(path)) if row.origin == SUGGESTED else None
-        found.append(replace(row, rule=rule))
+        rule = rule_of(entry.rules, ".".join(path))
+        told = row.origin == SUGGESTED or (row.origin == DEFAULT and rule is not None and not rule.of_many)
+        found.append(replace(row, rule=rule if told else None))
     return found
 
 
@@ -84,7 +86,7 @@ def _origin(choice: Choice, path: tuple[str, ...], value: Any, about: FieldInfo,
         if _gives(values, path):
             return Origin(key, value, unit, name)
     assumed = assumed_of(about)
-    usual = f"assumed: {assumed}" if assumed else "default"
+    usual = f"assumed: {assumed}" if assumed else DEFAULT
     return Origin(key, value, unit, usual if value == default else else_)
 
 

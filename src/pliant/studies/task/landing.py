@@ -23,13 +23,12 @@ from pliant.tasks.phase import Phase, Thing
 
 _LEAST_WAY = 1e-3  # m towards a contact; what goes less far stays where it is
 _SLOWEST = 2e-3  # m/s
-_SOURCE = "a mass that meets a spring, driven on by a loop that is T late; docs/tasks"
-_SPEED = Rule(
-    "phase.*.limit.speed", "F / √(k m + k² T²), F the phase's force, k of what it meets, m of the arm", _SOURCE
-)
+_SOURCE = "a mass that meets a spring and a damper, driven on by a loop that is T late; docs/tasks, landing"
+_SLOWER = "F / √(k m + k² T²), less where the damper alone would press with F, 2 mm/s at least"
+_SPEED = Rule("phase.*.limit.speed", f"{_SLOWER}; F the phase's force, k of what it meets, m of the arm", _SOURCE)
 _PRESS = Rule("phase.*.press", "2π √(m / k) + T", _SOURCE)
 APPROACH = Rule(
-    "phases.approach_speed", "0.05 m/s, or F / √(k m + k² T²) if that is less, F the largest force of the path", _SOURCE
+    "phases.approach_speed", f"0.05 m/s, or if that is less {_SLOWER}; F the largest force of the path", _SOURCE
 )
 RULES = (APPROACH, _SPEED, _PRESS)
 
