@@ -20,3 +20,8 @@ class TimingConfig(Config):
         ge=0.0,
         le=0.1,
     )
+
+    @property
+    def delay(self) -> float:
+        """s, from what is measured to the effect of its command."""
+        return self.sensing_delay + self.computation_delay

@@ -125,7 +125,7 @@ def build_list(case: TaskCase) -> Experiment:
     made = listed(case)
     tracking = made.tracked is not None
     frames = made.believed.frames
-    late = case.timing.sensing_delay + case.timing.computation_delay > 0.0
+    late = case.timing.delay > 0.0
     offer = Offer(
         robot=made.robot,
         model=with_mass_error(made.robot, case.truth.link_masses, generator(case.seed, "model.masses")),

@@ -75,7 +75,7 @@ class TaskCase(TaskParts, CaseConfig):
             if ":" not in name and name != self.controller:  # one of a file is looked for when it is chosen
                 _refuse_unknown(name, changes)
         entry = self.entry
-        late = self.timing.sensing_delay + self.timing.computation_delay > 0.0
+        late = self.timing.delay > 0.0
         preset = self.preset or ("tuned" if late else "perfect")
         base = merged(entry.default, PRESETS[preset].get(self.controller, {}))
         if isinstance(base, MpcConfig):

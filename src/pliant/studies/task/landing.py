@@ -100,7 +100,7 @@ def approach_speed(case: TaskCase, robot: Robot, path: Toolpath, force: float, s
         return case.phases.approach_speed
     normal = path.task.at(0.0).rotation[:, 2]
     mass = mass_along(robot.model, start, robot.frame_id(case.tool.frame), normal)
-    late = case.simulation.period + case.timing.sensing_delay + case.timing.computation_delay
+    late = case.simulation.period + case.timing.delay
     touch = Touch(case.surface.stiffness, case.surface.damping)
     slowest = gentle(touch, mass, late, force)[0] if force > 0.0 else math.inf
     return min(usual_approach(case), slowest)
@@ -118,7 +118,7 @@ def landings(case: TaskCase, robot: Robot, all_placed: Sequence[PlacedPhase], st
         return {}
     frame, found = all_placed[0].task.frame, dict[str, GentleLanding]()
     place = robot.placement(start, frame)[0]
-    late = case.simulation.period + case.timing.sensing_delay + case.timing.computation_delay
+    late = case.simulation.period + case.timing.delay
     for placed, phase in zip(all_placed, case.phase, strict=True):
         way, place = placed.task.position - place, placed.task.position
         along = pressed_along(placed.task)
