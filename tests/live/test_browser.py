@@ -143,7 +143,7 @@ def test_a_log_on_the_page_with_a_time_slider(live: Live) -> None:
             drag(live, "time", 0.5)
             middle = 0.5 * (shown.time[0] + shown.time[-1])
             until(lambda: abs(replay.time - middle) < 0.1 * (shown.time[-1] - shown.time[0]), "the middle of the log")
-            live.tab.get_by_text(f"t = {replay.time:.3f} s").wait_for()
+            until(lambda: live.tab.get_by_text(f"t = {replay.time:.3f} s").is_visible(), "its time on the page")
             live.shoot("replay")
         finally:
             replay.stop()
