@@ -75,30 +75,8 @@ def rpy(roll: float, pitch: float, yaw: float) -> Array:
 
 
 def quaternion(R: Array) -> Array:
-    """Unit quaternion (w, x, y, z) of a rotation matrix (3, 3). Its sign is arbitrary.
-
-    Bit for bit that of `quaternions`, whose arrays take longer for one matrix than its numbers do.
-    """
-    rows: list[list[float]] = np.asarray(R, dtype=np.float64).tolist()
-    (a, _, _), (_, e, _), (_, _, i) = rows
-    turn = (rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1])
-    trace = a + (e + i)
-    if trace > 0.0:
-        root = math.sqrt(trace + 1.0)
-        w, (x, y, z) = 0.5 * root, (part * (0.5 / root) for part in turn)
-        return np.array((w, x, y, z))
-    diagonal = (a, e, i)
-    first = diagonal.index(max(diagonal))
-    second, third = (first + 1) % 3, (first + 2) % 3
-    square = diagonal[first] - diagonal[second] - diagonal[third] + 1.0
-    if not square > 0.0:
-        return quaternions(R)[0]  # not a rotation
-    root = math.sqrt(square)
-    vector = [0.0, 0.0, 0.0]
-    vector[first] = 0.5 * root
-    for other in (second, third):
-        vector[other] = (rows[other][first] + rows[first][other]) * (0.5 / root)
-    return np.array((turn[first] * (0.5 / root), *vector))
+    """Unit quaternion (w, x, y, z) of a rotation matrix (3, 3). Its sign is arbitrary."""
+    return quaternions(R)[0]
 
 
 def quaternions(rotations: Array) -> Array:

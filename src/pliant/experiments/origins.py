@@ -74,10 +74,9 @@ def origins(choice: Choice, parameters: ControllerConfig | None) -> list[Origin]
 
 def _with_suggestions(found: list[Origin], suggested: Mapping[str, Suggestion]) -> list[Origin]:
     """The rows, those that say nothing replaced by what is suggested for them."""
-    rows = [Origin(key, one.value, one.unit, SUGGESTED, one.rule) for key, one in suggested.items()]
-    return [one for one in found if one.key not in suggested or one.value is not None] + [
-        row for row in rows if all(one.key != row.key or one.value is None for one in found)
-    ]
+    given = {row.key: row for row in found if row.value is not None or row.key not in suggested}
+    rows = {key: Origin(key, one.value, one.unit, SUGGESTED, one.rule) for key, one in suggested.items()}
+    return list((given | {key: row for key, row in rows.items() if key not in given}).values())
 
 
 def _origin(choice: Choice, path: tuple[str, ...], value: Any, about: FieldInfo, default: Any, else_: str) -> Origin:

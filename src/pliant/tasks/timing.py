@@ -16,7 +16,7 @@ class TimingConfig(Config):
         5e-3,
         "s",
         "from a reading to the effect of its command",
-        assumed="a bus and drives of research arms; measure yours",
+        assumed="that of [FFMPC] sec. VI-B; measure yours",
         ge=0.0,
         le=0.1,
     )
