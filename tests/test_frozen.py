@@ -37,6 +37,20 @@ def test_what_cannot_be_changed_is_refused() -> None:
         changed(Open(), x=1)
 
 
+def test_a_copy_keeps_and_gives_back_what_it_is_given() -> None:
+    array, other = np.zeros(2), np.ones(2)
+    one = Estimate(1.0, array, array, array, array)
+    before = sys.getrefcount(array), sys.getrefcount(other)
+    made = [changed(one, q=other, **{"".join(["tor", "que"]): other}) for _ in range(10)]
+    assert (sys.getrefcount(array), sys.getrefcount(other)) == (before[0] + 20, before[1] + 20)
+    assert all(each.q is other and each.torque is other and each.v is array for each in made)
+    del made
+    for _ in range(10):
+        with pytest.raises(AttributeError):
+            changed(one, q=other, speed=other)
+    assert (sys.getrefcount(array), sys.getrefcount(other)) == before
+
+
 class Body:
     a: float
     b: float = 2.0

@@ -1,4 +1,5 @@
 // Extension module pliant._values.
+#include "changer.hpp"
 #include "maker.hpp"
 #include "views.hpp"
 
@@ -9,6 +10,7 @@ NB_MODULE(_values, m) {
   m.doc() = "Frozen values made in one call, and views of one array.";
   import_numpy();
   m.def("make_by_slots", &make_by_slots, "kind"_a, "fields"_a, "absent"_a);
+  m.def("changed", &changed, "value"_a, "fields"_a);
   nb::class_<Views>(m, "Views")
       .def(nb::init<std::vector<Place>>(), "places"_a)
       .def_prop_ro("size", &Views::size)

@@ -1,9 +1,11 @@
 """Typed face of frozen values made in one call, and of views of one array (cpp/values)."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from pliant.spatial import Array
+
+_Value = TypeVar("_Value")
 
 def make_by_slots(kind: type, fields: list[tuple[str, Any, bool]], absent: object) -> None:
     """From now on a call of the class writes each field into its slot. Arguments that do not fit go to `__init__`,
@@ -16,6 +18,14 @@ def make_by_slots(kind: type, fields: list[tuple[str, Any, bool]], absent: objec
 
     Raises:
         ValueError: a field without a slot, or more than 32 of them.
+    """
+
+def changed(value: _Value, **fields: Any) -> _Value:
+    """`dataclasses.replace` in about a tenth of the time, for a dataclass whose slots are all of its own class. It
+    skips `__post_init__`: do not use it for classes that check their fields.
+
+    Raises:
+        AttributeError: a field that the value does not have, or a class without slots.
     """
 
 class Views:
