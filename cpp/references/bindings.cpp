@@ -3,12 +3,14 @@
 
 #include "../shared/numpy_arrays.hpp"
 #include "spline.hpp"
+#include "task_rows.hpp"
 
 namespace {
 
 using namespace nanobind::literals;
 namespace nb = nanobind;
 using pliant::Packed;
+using pliant::references::RowsAhead;
 using pliant::references::Spline;
 
 void build(Spline* self, std::vector<double> times, double step, Packed<const double, 3> pieces,
@@ -25,11 +27,38 @@ void at(const Spline& spline, double time, const Packed<double, 1>& out) {
   spline.at(time, out.data());
 }
 
+nb::object row(RowsAhead& rows, double time, double period) {
+  const double* now = rows.now(time, period);
+  nb::object made = pliant::new_array({npy_intp(rows.width())});
+  std::copy_n(now, rows.width(), pliant::data_of(made));
+  return made;
+}
+
+nb::object task(RowsAhead& rows, double time, double period, nb::handle offset, const std::vector<double>& height) {
+  const double* now = rows.now(time, period);
+  return pliant::references::parts_of(now, rows.width(), offset, height);
+}
+
+nb::object parts(const Packed<const double, 1>& row, nb::handle offset, const std::vector<double>& height) {
+  return pliant::references::parts_of(row.data(), row.size(), offset, height);
+}
+
 }  // namespace
 
 NB_MODULE(_references, m) {
+  pliant::import_numpy();
   m.doc() = "Functions of time that a loop asks for in each tick.";
   nb::class_<Spline>(m, "Spline")
       .def("__init__", &build, nb::keep_alive<1, 4>(), "times"_a, "step"_a, "pieces"_a.noconvert(), "first"_a, "last"_a)
       .def("at", &at, "time"_a, "out"_a.noconvert());
+  nb::class_<RowsAhead>(m, "RowsAhead")
+      .def(nb::init<nb::object, double>(), "rows"_a, "rounding"_a)
+      .def("row", &row, "time"_a, "period"_a)
+      .def("task", &task, "time"_a, "period"_a, "offset"_a.none(), "height"_a)
+      .def("fill", &pliant::references::fill, "table"_a.noconvert(), "begin"_a, "end"_a, "times"_a, "start"_a,
+           "period"_a, "offset"_a.none(), "heights"_a)
+      .def("preview", &pliant::references::preview, "time"_a, "nodes"_a, "start"_a, "period"_a, "offset"_a.none(),
+           "heights"_a, "turning"_a, "width"_a);
+  m.def("parts_of", &parts, "row"_a, "offset"_a.none(), "height"_a);
+  m.def("columns_of", &pliant::references::columns_of, "times"_a, "table"_a, "turning"_a);
 }

@@ -8,7 +8,7 @@ using namespace nb::literals;
 
 NB_MODULE(_values, m) {
   m.doc() = "Frozen values made in one call, and views of one array.";
-  import_numpy();
+  pliant::import_numpy();
   m.def("make_by_slots", &make_by_slots, "kind"_a, "fields"_a, "absent"_a);
   m.def("changed", &changed, "value"_a, "fields"_a);
   nb::class_<Views>(m, "Views")

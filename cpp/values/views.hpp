@@ -2,23 +2,17 @@
 #pragma once
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#define NPY_NO_DEPRECATED_API NPY_2_0_API_VERSION
-#include <numpy/arrayobject.h>
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "../shared/numpy_arrays.hpp"
+#include "../shared/numpy_new.hpp"
 
 namespace pliant::values {
 
 namespace nb = nanobind;
-
-inline void import_numpy() {
-  if (_import_array() < 0) throw nb::python_error();
-}
 
 // (where a part begins, its shape…)
 using Place = std::vector<npy_intp>;
@@ -49,17 +43,7 @@ inline PyArrayObject* holder_of(nb::handle numbers, npy_intp size) {
 }
 
 inline nb::object view(PyArrayObject* of, const Place& place) {
-  PyArray_Descr* type = PyArray_DESCR(of);
-  Py_INCREF(type);
-  void* data = static_cast<double*>(PyArray_DATA(of)) + place[0];
-  const int flags = PyArray_FLAGS(of) & NPY_ARRAY_WRITEABLE;
-  nb::object made = nb::steal(PyArray_NewFromDescr(&PyArray_Type, type, int(place.size()) - 1, place.data() + 1,
-                                                   nullptr, data, flags, nullptr));
-  if (!made.is_valid()) throw nb::python_error();
-  Py_INCREF(of);
-  if (PyArray_SetBaseObject(reinterpret_cast<PyArrayObject*>(made.ptr()), reinterpret_cast<PyObject*>(of)) < 0)
-    throw nb::python_error();
-  return made;
+  return view_of(of, int(place.size()) - 1, place.data() + 1, nullptr, place[0]);
 }
 
 // Several views of an array.

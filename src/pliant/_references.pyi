@@ -1,6 +1,6 @@
 """Typed face of functions of time (cpp/references)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from pliant.spatial import Array
 
@@ -23,3 +23,101 @@ class Spline:
 
     def at(self, time: float, out: Array) -> None:
         """Writes every column (width,) at a time in s. Raises ValueError for a row of another width, or no number."""
+
+class RowsAhead:
+    """Rows of a function of time, worked out once for each tick of a clock, 128 ticks in one go. A cache: what it gives
+    depends on the time asked for, not on what was asked before."""
+
+    def __init__(self, rows: Callable[[Array], Array], rounding: float) -> None:
+        """
+        Args:
+            rows: times (m,) s, zero or more, to rows (m, w) side by side; each row depends on its own time only.
+            rounding: s by which an instant may miss a tick of the clock.
+        """
+
+    def row(self, time: float, period: float) -> Array:
+        """Row (w,) at a time, now.
+
+        Args:
+            time: s.
+            period: s from one tick of the clock to the next; 0: it is not regular.
+
+        Raises:
+            ValueError: there is not a row for each time, or they have another width than before.
+        """
+
+    def task(
+        self, time: float, period: float, offset: Array | None, height: Sequence[float]
+    ) -> tuple[Array, Array, Array, Array, Array, Array, Array | None]:
+        """`parts_of` the row at a time. Args: as there and of `row`. Raises ValueError as these do."""
+
+    def fill(
+        self,
+        table: Array,
+        begin: int,
+        end: int,
+        times: Array,
+        start: float,
+        period: float,
+        offset: Array | None,
+        heights: Sequence[float],
+    ) -> None:
+        """Writes the rows of equally spaced times from now on, moved.
+
+        Args:
+            table: (N+1, w), w ≥ 57, of which the rows `begin` to `end` are written.
+            begin, end: numbers of the first of these rows, and of the one after the last.
+            times: (N+1,) s of the loop's clock.
+            start: s at which the function's own clock is zero.
+            period: s from one tick of the loop's clock to the next; 0: it is not regular.
+            offset: (3,) m, displacement of all of them; None: none.
+            heights: m, m/s and m/s² along the normal, once for all rows or for each in turn; empty: none.
+
+        Raises:
+            ValueError: parts that do not fit together.
+        """
+    def preview(
+        self,
+        time: float,
+        nodes: Array,
+        start: float,
+        period: float,
+        offset: Array | None,
+        heights: Sequence[float],
+        turning: bool,
+        width: int,
+    ) -> tuple[Array, Array, Array, Array, Array, Array | None, Array | None]:
+        """`columns_of` a preview of which all nodes are within this function's phase.
+
+        Args:
+            time: s of the loop's clock.
+            nodes: (N+1,) s after it, equally spaced.
+            start, period, offset, heights: as of `fill`.
+            turning: as of `columns_of`.
+            width: numbers of a row.
+
+        Raises:
+            ValueError: parts that do not fit together.
+        """
+
+def parts_of(
+    row: Array, offset: Array | None, height: Sequence[float]
+) -> tuple[Array, Array, Array, Array, Array, Array, Array | None]:
+    """Position (3,), rotation (3, 3), twist (6,) and its rate (6,), wrench (6,), task axes (3, 3) and posture (n,) of a
+    row (57 + n,), moved; read-only. None in place of a posture without numbers.
+
+    Args:
+        row: as `preview_rows.sampled` makes it.
+        offset: (3,) m, displacement; None: none.
+        height: m, m/s and m/s² along the normal of the axes; empty: none.
+
+    Raises:
+        ValueError: numbers of another shape.
+    """
+
+def columns_of(
+    times: Array, table: Array, turning: bool
+) -> tuple[Array, Array, Array, Array, Array, Array | None, Array | None]:
+    """The times as given, position (m, 3), rotation (m, 3, 3), twist (m, 6), wrench (m, 6), posture (m, n), task axes
+    (m, 3, 3) of the rows of a table (m, 57 + n), views of it; None in place of a posture without numbers, and of axes
+    unless they are `turning`. Raises ValueError for a table of another shape."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pliant.interfaces import Lookahead
-from pliant.references.rows_ahead import RowsAhead
+from pliant._references import RowsAhead
+from pliant.interfaces import CLOCK_ROUNDING, Lookahead
 from pliant.references.trajectories.excerpt import Excerpt, TurningExcerpt
 from pliant.references.trajectories.rotation import Fixed, QuaternionSpline, Turning, WarpedTurning
 from pliant.references.trajectories.time_scaling import EaseIn, Scale
@@ -54,27 +54,14 @@ def test_rows_are_what_single_times_give_whatever_their_neighbours(one: Trajecto
 
 
 class Counted:
-    """Rows (m, 2): time and its square. Counts the times that it was asked for."""
+    """Rows (m, 57): time, its square, and zeros. Counts the times that it was asked for."""
 
     def __init__(self) -> None:
         self.asked: list[float] = []
 
     def __call__(self, times: Array) -> Array:
         self.asked += times.tolist()
-        return np.column_stack([times, times**2])
-
-
-def test_each_tick_of_a_clock_is_worked_out_once_and_nodes_ahead_are_among_them() -> None:
-    counted = Counted()
-    samples = RowsAhead(counted)
-    for tick in range(200):
-        time = 1e-3 * tick
-        np.testing.assert_array_equal(samples.row(time, 1e-3), counted_row(time))
-        later = time + 0.005 + 0.003 * np.arange(6)
-        np.testing.assert_array_equal(samples.rows(later), np.array([counted_row(float(t)) for t in later]))
-    assert len(set(counted.asked)) == len(counted.asked) < 260
-    samples.rows(np.array([0.2005, 0.2015]))  # control: instants between ticks are worked out beside
-    assert 0.2005 in counted.asked
+        return np.pad(np.column_stack([times, times**2]), ((0, 0), (0, 55)))
 
 
 def counted_row(time: float) -> Array:
@@ -82,11 +69,52 @@ def counted_row(time: float) -> Array:
     return np.array([time, time**2])
 
 
+def ahead(samples: RowsAhead, times: Array, start: float = 0.0) -> Array:
+    """Time and square (m, 2) that it gives ahead of a clock of 1 kHz."""
+    table = np.empty((len(times), 57))
+    samples.fill(table, 0, len(times), times, start, 1e-3, None, ())
+    return table[:, :2]
+
+
+def test_each_tick_of_a_clock_is_worked_out_once_and_nodes_ahead_are_among_them() -> None:
+    counted = Counted()
+    samples = RowsAhead(counted, CLOCK_ROUNDING)
+    for tick in range(200):
+        time = 1e-3 * tick
+        np.testing.assert_array_equal(samples.row(time, 1e-3)[:2], counted_row(time))
+        later = time + 0.005 + 0.003 * np.arange(6)
+        np.testing.assert_array_equal(ahead(samples, later), np.array([counted_row(float(t)) for t in later]))
+    assert len(set(counted.asked)) == len(counted.asked) < 200 + 128
+    ahead(samples, np.array([0.2005, 0.2015]))  # control: instants between ticks are worked out beside
+    assert 0.2005 in counted.asked
+
+
+@pytest.mark.parametrize("begin", [0.1, 0.1004])
+def test_ticks_of_a_clock_that_has_not_begun_are_worked_out_once_too(begin: float) -> None:
+    """Previews reach into a phase before its first tick, which is later than its begin by a part of a period."""
+    counted = Counted()
+    samples = RowsAhead(counted, CLOCK_ROUNDING)
+    first = 1e-3 * np.ceil(begin / 1e-3 - 1e-6)
+    for tick in range(300):
+        time = 1e-3 * tick
+        if time >= first - 1e-9:
+            found = samples.row(time - begin, 1e-3)[:2]
+            np.testing.assert_allclose(found, counted_row(time - begin), rtol=1e-14)
+        later = time + 0.003 * np.arange(6)
+        later = later[later >= first - 1e-9]
+        if len(later):
+            wanted = np.array([counted_row(max(float(t) - begin, 0.0)) for t in later])
+            np.testing.assert_allclose(ahead(samples, later, begin), wanted, rtol=1e-14)
+    assert len(set(counted.asked)) == len(counted.asked) < 200 + 128
+    samples.row(0.1 + 0.3e-3, 1e-3)  # control: a clock with other ticks is worked out anew
+    assert len(counted.asked) > 2 * 128
+
+
 def test_a_clock_that_goes_back_jumps_or_stutters_gets_its_own_rows() -> None:
-    samples = RowsAhead(Counted())
+    samples = RowsAhead(Counted(), CLOCK_ROUNDING)
     for time, period in [(0.0, 0.0), (0.001, 0.001), (0.05, 0.0), (0.002, 0.001), (9.0, 0.001), (9.0004, 0.0)]:
-        np.testing.assert_array_equal(samples.row(time, period), counted_row(time))
-        np.testing.assert_array_equal(samples.rows(np.array([time + 0.01])), [counted_row(time + 0.01)])
+        np.testing.assert_array_equal(samples.row(time, period)[:2], counted_row(time))
+        np.testing.assert_array_equal(ahead(samples, np.array([time + 0.01])), [counted_row(time + 0.01)])
 
 
 def test_a_task_says_the_same_to_a_regular_and_to_an_irregular_clock() -> None:

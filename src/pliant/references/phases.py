@@ -2,38 +2,26 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import pinocchio as pin
 
+from pliant._references import RowsAhead, columns_of, parts_of
 from pliant.errors import ConfigError, RunFailedError
 from pliant.frozen import changed
 from pliant.interfaces import CLOCK_ROUNDING, Lookahead, ReferenceSource
-from pliant.references.foreseen import instants
-from pliant.references.landing import SETTLE, Height
+from pliant.references.landing import Height
 from pliant.references.phase_state import PhaseState as PhaseState
-from pliant.references.preview_rows import (
-    ACCELERATION,
-    AXES,
-    NORMAL,
-    NORMAL_BEND,
-    NORMAL_RATE,
-    POSITION,
-    POSTURE,
-    ROTATION,
-    VELOCITY,
-    WRENCH,
-    Stretch,
-    preview_of_rows,
-    sampled,
-)
-from pliant.references.rows_ahead import RowsAhead
+from pliant.references.phase_state import moved, moved_ahead
+from pliant.references.preview_rows import Parts, PhaseRows
 from pliant.references.task_phase import TaskPhase as TaskPhase
 from pliant.robot import Robot
 from pliant.signals import Estimate, Preview, Reference, TaskReference
 from pliant.spatial import Array
+
+_ROUNDING = 1e-9  # s; times are sums of periods
 
 
 class PhasedSource(ReferenceSource[PhaseState]):
@@ -72,31 +60,41 @@ class PhasedSource(ReferenceSource[PhaseState]):
         self._model, self._data = robot.model, robot.model.createData()
         self._frame_id = robot.frame_id(frame)
         self.posture = None if posture is None else robot.vector(posture, "the posture")
-        self._samples = [RowsAhead(partial(self._rows, phase)) for phase in self.phases]
-        self._last = self._period = 0.0
-        """s of the clock and between its last two ticks; they decide what is worked out ahead, not what it is"""
+        self._rows = [PhaseRows(phase, rotation, self.posture) for phase in phases]
+        self._samples = [RowsAhead(rows, CLOCK_ROUNDING) for rows in self._rows]
+        if lookahead is not None:
+            self._nodes = lookahead.step * np.arange(lookahead.nodes + 1, dtype=np.float64)
+            self._last_node = float(self._nodes[-1])
+            self._names = [(name,) * len(self._nodes) for name in names]
+        self._coming: deque[tuple[PhaseState, PhaseState]] = deque(maxlen=len(phases))
+        """the last phases that were foreseen: before and after"""
+        self._last = self._period = self._clock = 0.0
+        """s of the clock and between its last two ticks, and the latter where it is regular, else 0; they decide what
+        is worked out ahead, not what it is"""
 
     def init(self, estimate: Estimate) -> PhaseState:
         here = self._position(estimate.q)
         return PhaseState(0, estimate.time, here, here)
 
     def step(self, estimate: Estimate, state: PhaseState) -> tuple[Reference, PhaseState]:
-        state = self._advanced(estimate, state)
         time, phase = estimate.time, self.phases[state.index]
+        if phase.ends_on_contact or time >= state.start + phase.duration - _ROUNDING:
+            state = self._advanced(estimate, state)
+            phase = self.phases[state.index]
         period, self._last = time - self._last, time
-        regular, self._period = abs(period - self._period) < CLOCK_ROUNDING, period
-        row = self._samples[state.index].row(time - state.start, period if regular else 0.0)
+        self._clock = period if abs(period - self._period) < CLOCK_ROUNDING else 0.0
+        self._period = period
+        offset, height = moved(phase, state, time)
+        task, posture = self._task_of(
+            phase, self._samples[state.index].task(time - state.start, self._clock, offset, height)
+        )
         ahead, preview = self.lookahead, None
         if ahead is not None and ahead.due(time, state.next_look):
-            preview = self._preview(state, instants(time, ahead))
+            preview = self._preview(state, time + ahead.lead)
             state = changed(state, next_look=time + ahead.every)
-        posture = row[POSTURE] if len(row) > POSTURE.start else None
-        return Reference(time, (self._placed(state, row, time),), posture, phase.name, preview), state
+        return Reference(time, (task,), posture, phase.name, preview), state
 
     # ------------------------------------------------------------------ inside
-
-    def _rows(self, phase: TaskPhase, times: Array) -> Array:
-        return sampled(phase, times, self.rotation, self.posture)
 
     def _advanced(self, estimate: Estimate, state: PhaseState) -> PhaseState:
         """The present phase, from time and contact."""
@@ -110,7 +108,7 @@ class PhasedSource(ReferenceSource[PhaseState]):
                 start = estimate.time
             else:
                 start = state.start + phase.duration
-                if estimate.time < start - 1e-9:
+                if estimate.time < start - _ROUNDING:
                     break
             touched = self.phases[state.index + 1].touches and not phase.touches
             after = self._next(state, start)
@@ -172,69 +170,66 @@ class PhasedSource(ReferenceSource[PhaseState]):
     def _expected(self, state: PhaseState, time: float) -> PhaseState:
         """The phase at a later time, as far as it is known now."""
         while state.index + 1 < len(self.phases):
-            phase = self.phases[state.index]
-            if phase.ends_on_contact or time < state.start + phase.duration - 1e-9:
+            if time < self._until(state):
                 break
-            state = self._next(state, state.start + phase.duration)
+            state = self._foreseen(state, state.start + self.phases[state.index].duration)
         return state
 
+    def _foreseen(self, state: PhaseState, start: float) -> PhaseState:
+        """`_next`, worked out once for all previews that reach into the next phase."""
+        for before, after in self._coming:
+            if before.same_phase(state):
+                return after
+        after = self._next(state, start)
+        self._coming.append((state, after))
+        return after
+
     def _task(self, state: PhaseState, time: float) -> TaskReference:
-        times = np.array([max(time - state.start, 0.0)])
-        return self._placed(state, self._rows(self.phases[state.index], times)[0], time)
+        phase, times = self.phases[state.index], np.array([max(time - state.start, 0.0)])
+        return self._task_of(phase, parts_of(self._rows[state.index](times)[0], *moved(phase, state, time)))[0]
 
-    def _placed(self, state: PhaseState, row: Array, time: float) -> TaskReference:
-        """The reference of the phase, moved to its anchor."""
-        phase, offset = self.phases[state.index], self._offset(state)
-        position, velocity, acceleration = row[POSITION], row[VELOCITY], row[ACCELERATION]
-        if offset is not None:
-            position = position + offset
-        if phase.anchor == "surface":
-            h, h_dot, h_ddot = state.height.at(time)
-            n, n_dot, n_ddot = row[NORMAL], row[NORMAL_RATE], row[NORMAL_BEND]
-            position, velocity, acceleration = position + h * n[:3], velocity + h * n_dot, acceleration + h * n_ddot
-            if h_dot or h_ddot:
-                velocity = velocity + h_dot * n
-                acceleration = acceleration + 2.0 * h_dot * n_dot + h_ddot * n
-        axes = None if phase.axes is None else row[AXES].reshape(3, 3)
-        rotation = row[ROTATION].reshape(3, 3)
-        return TaskReference(
-            self.frame, position, rotation, velocity, acceleration, row[WRENCH], None, axes, phase.modes
+    def _task_of(self, phase: TaskPhase, parts: Parts) -> tuple[TaskReference, Array | None]:
+        """The reference of a phase and its posture."""
+        position, rotation, velocity, acceleration, wrench, axes, posture = parts
+        own = None if phase.axes is None else axes
+        task = TaskReference(self.frame, position, rotation, velocity, acceleration, wrench, None, own, phase.modes)
+        return task, posture
+
+    def _preview(self, state: PhaseState, time: float) -> Preview:
+        """The references at the nodes (N+1,), of which the first is at a time in s."""
+        index, phase, nodes = state.index, self.phases[state.index], self._nodes
+        if time + self._last_node >= self._until(state):
+            return self._across(state, time + nodes)
+        offset, heights = moved_ahead(phase, state, time, nodes)
+        times, position, rotation, velocity, wrench, posture, axes = self._samples[index].preview(
+            time, nodes, state.start, self._clock, offset, heights, self._turning, self._rows[index].width
         )
+        return Preview(times, position, rotation, velocity, wrench, self._names[index], posture, axes)
 
-    def _offset(self, state: PhaseState) -> Array | None:
-        anchor = self.phases[state.index].anchor
-        return state.begin if anchor == "begin" else state.touch if anchor == "touch" else None
-
-    def _preview(self, state: PhaseState, times: Array) -> Preview:
-        """The references at later times (N+1,) s."""
-        stretches: list[Stretch] = []
-        begin = 0
-        while begin < len(times):
+    def _across(self, state: PhaseState, times: Array) -> Preview:
+        """The references at later times (N+1,) s, which may be in other phases."""
+        begin, count = 0, len(times)
+        stretches: list[tuple[PhaseState, int, int]] = []
+        while begin < count:
             state = self._expected(state, float(times[begin]))
-            end = self._until(state, times)
-            stretches.append(self._stretch(state, times[begin:end]))
+            end = int(np.searchsorted(times, self._until(state)))
+            stretches.append((state, begin, end))
             begin = end
-        return preview_of_rows(times, stretches, turning=self._turning)
+        table = np.empty((count, min([self._rows[one.index].width for one, _, _ in stretches])))
+        names: tuple[str, ...] = ()
+        for one, begin, end in stretches:
+            offset, heights = moved_ahead(self.phases[one.index], one, 0.0, times[begin:end])
+            self._samples[one.index].fill(table, begin, end, times, one.start, self._clock, offset, heights)
+            names += self._names[one.index][begin:end]
+        _, position, rotation, velocity, wrench, posture, axes = columns_of(times, table, self._turning)
+        return Preview(times, position, rotation, velocity, wrench, names, posture, axes)
 
-    def _until(self, state: PhaseState, times: Array) -> int:
-        """Number of the first time (N+1,) s that is expected in a later phase."""
+    def _until(self, state: PhaseState) -> float:
+        """s at which a phase ends by the clock; infinite where it does not."""
         phase = self.phases[state.index]
         if phase.ends_on_contact or state.index + 1 == len(self.phases):
-            return len(times)
-        return int(np.searchsorted(times, state.start + phase.duration - 1e-9))
-
-    def _stretch(self, state: PhaseState, times: Array) -> Stretch:
-        phase, height = self.phases[state.index], state.height
-        rows = self._samples[state.index].rows(times - state.start)
-        heights: list[tuple[float, float, float]] = []
-        if phase.anchor == "surface":
-            settled = times[0] - height.start >= SETTLE
-            heights = (
-                [height.at(time) for time in times[:1].tolist()] * len(times)
-                if settled
-                else [height.at(time) for time in times.tolist()]
-            )
-        return Stretch(phase.name, rows, self._offset(state), heights)
+            return np.inf
+        return state.start + phase.duration - _ROUNDING
 
     def _position(self, q: Array) -> Array:
         pin.framesForwardKinematics(self._model, self._data, q)

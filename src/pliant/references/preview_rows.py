@@ -1,70 +1,95 @@
-"""References of a phase as rows of numbers, one per instant, and previews made of them."""
+"""References of a phase as rows of numbers, one per instant."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from pliant.references.task_phase import TaskPhase
-from pliant.references.trajectories.rotation import Orientation
-from pliant.signals import Preview
+from pliant.references.trajectories.rotation import Fixed, Orientation, Turning
+from pliant.references.trajectories.trajectory import Hold, Trajectory
 from pliant.spatial import Array
 
-POSITION, ROTATION, VELOCITY, ACCELERATION = slice(0, 3), slice(3, 12), slice(12, 18), slice(18, 24)
-WRENCH, AXES = slice(24, 30), slice(30, 39)
-NORMAL, NORMAL_RATE, NORMAL_BEND = slice(39, 45), slice(45, 51), slice(51, 57)
-"""the third of the axes and its first two time derivatives; the last three entries of each are zero"""
-_POSTURE = 57
-POSTURE = slice(_POSTURE, None)
-_WORLD = np.eye(3).ravel()
+PLAIN = 57
+"""numbers of a row without a posture. Columns are as `cpp/references/task_rows.hpp` has them: position (3), rotation
+(9), twist (6) and its rate (6), wrench (6), task axes (9), the third of them and its first two time derivatives (6
+each, of which the last three are zero), posture"""
+Parts = tuple[Array, Array, Array, Array, Array, Array, Array | None]
+"""position, rotation, twist, its rate, wrench, task axes and posture of one row"""
 
 
-class Stretch(NamedTuple):
-    """Consecutive nodes of a preview within one phase."""
-
-    name: str
-    """of the phase"""
-    rows: Array
-    """(m, w), this stretch's own: written into"""
-    offset: Array | None
-    """(3,) m, displacement of all of them; None: none"""
-    heights: Sequence[tuple[float, float, float]]
-    """m, m/s, m/s² along the normal, of each node; empty: none"""
-
-
-def sampled(phase: TaskPhase, times: Array, rotation: Array, posture: Array | None) -> Array:
-    """A phase at many instants of its own clock, before it is anchored.
+class PhaseRows:
+    """A phase at many instants of its own clock, before it is anchored. What does not move is worked out once.
 
     Args:
         phase: which one.
-        times: (m,) s, m ≥ 1.
         rotation: (3, 3) R_world_frame, of a phase that has none of its own.
         posture: (n,) rad, likewise; None for none.
-
-    Returns:
-        (m, 57 + n), or (m, 57) without a posture.
     """
-    if phase.posture is not None:
-        posture = phase.posture.rows(times).value
-    table = np.zeros((len(times), _POSTURE + (0 if posture is None else posture.shape[-1])))
-    motion = phase.motion.rows(times)
-    table[:, POSITION], table[:, 12:15], table[:, 18:21] = motion
-    table[:, ROTATION] = rotation.ravel()
-    if phase.rotation is not None:
-        R, spin, change = phase.rotation.rows(times)
-        table[:, ROTATION], table[:, 15:18], table[:, 21:24] = R.reshape(-1, 9), spin, change
-    if phase.wrench is not None:
-        table[:, WRENCH] = phase.wrench.rows(times).value
-    table[:, AXES] = _WORLD
-    if phase.axes is not None:
-        axes = phase.axes.rows(times)
-        table[:, AXES] = axes.rotation.reshape(-1, 9)
-        table[:, 39:42], table[:, 45:48], table[:, 51:54] = _third_axes(axes)
-    if posture is not None:
-        table[:, POSTURE] = posture
-    return table
+
+    def __init__(self, phase: TaskPhase, rotation: Array, posture: Array | None) -> None:
+        self.phase = phase
+        own = posture if phase.posture is None else phase.posture.at(0.0).value
+        still = np.zeros((1, PLAIN + (0 if own is None else len(own))))
+        still[:, 3:12], still[:, 30:39] = rotation.ravel(), np.eye(3).ravel()
+        if own is not None:
+            still[:, PLAIN:] = own
+        start = np.zeros(1)
+        _move(still, start, phase.motion)
+        _turn(still, start, phase.rotation)
+        _press(still, start, phase.wrench)
+        _turn_axes(still, start, phase.axes)
+        self._still = still
+        self._motion, self._wrench = _moving(phase.motion), _moving(phase.wrench)
+        self._rotation, self._axes = _turning(phase.rotation), _turning(phase.axes)
+        self._posture = _moving(phase.posture)
+
+    @property
+    def width(self) -> int:
+        """Numbers of a row: 57 + n, or 57 without a posture."""
+        return self._still.shape[1]
+
+    def __call__(self, times: Array) -> Array:
+        """Rows (m, width). Args: times (m,) s, m ≥ 1."""
+        table = np.empty((len(times), self._still.shape[1]))
+        table[:] = self._still
+        _move(table, times, self._motion)
+        _turn(table, times, self._rotation)
+        _press(table, times, self._wrench)
+        _turn_axes(table, times, self._axes)
+        if self._posture is not None:
+            table[:, PLAIN:] = self._posture.rows(times).value
+        return table
+
+
+def _moving(one: Trajectory | None) -> Trajectory | None:
+    return None if isinstance(one, Hold) else one
+
+
+def _turning(one: Turning | None) -> Turning | None:
+    return None if isinstance(one, Fixed) else one
+
+
+def _move(table: Array, times: Array, motion: Trajectory | None) -> None:
+    if motion is not None:
+        table[:, :3], table[:, 12:15], table[:, 18:21] = motion.rows(times)
+
+
+def _turn(table: Array, times: Array, rotation: Turning | None) -> None:
+    if rotation is not None:
+        R, spin, change = rotation.rows(times)
+        table[:, 3:12], table[:, 15:18], table[:, 21:24] = R.reshape(-1, 9), spin, change
+
+
+def _press(table: Array, times: Array, wrench: Trajectory | None) -> None:
+    if wrench is not None:
+        table[:, 24:30] = wrench.rows(times).value
+
+
+def _turn_axes(table: Array, times: Array, axes: Turning | None) -> None:
+    if axes is not None:
+        found = axes.rows(times)
+        table[:, 30:39] = found.rotation.reshape(-1, 9)
+        table[:, 39:42], table[:, 45:48], table[:, 51:54] = _third_axes(found)
 
 
 def _third_axes(axes: Orientation) -> tuple[Array, Array, Array]:
@@ -75,36 +100,3 @@ def _third_axes(axes: Orientation) -> tuple[Array, Array, Array]:
         return n, np.zeros_like(n), np.zeros_like(n)
     n_dot = np.cross(spin, n)
     return n, n_dot, np.cross(change, n) + np.cross(spin, n_dot)
-
-
-def preview_of_rows(times: Array, stretches: Sequence[Stretch], *, turning: bool) -> Preview:
-    """The preview of some instants; a posture is part of it where every instant has one.
-
-    Args:
-        times: (N+1,) s.
-        stretches: in order, with N + 1 rows in all.
-        turning: whether the preview has the task's axes.
-    """
-    for _, rows, offset, heights in stretches:
-        if offset is not None:
-            rows[:, POSITION] += offset
-        if heights:
-            lifts = np.array(heights)
-            rows[:, POSITION] += lifts[:, :1] * rows[:, NORMAL][:, :3]
-            rows[:, VELOCITY] += lifts[:, :1] * rows[:, NORMAL_RATE] + lifts[:, 1:2] * rows[:, NORMAL]
-    tables = [stretch.rows for stretch in stretches]
-    table = tables[0]
-    if len(tables) > 1:
-        width = min(rows.shape[1] for rows in tables)
-        table = np.concatenate([rows[:, :width] for rows in tables])
-    count = len(times)
-    return Preview(
-        time=times,
-        position=table[:, POSITION],
-        rotation=table[:, ROTATION].reshape(count, 3, 3),
-        velocity=table[:, VELOCITY],
-        wrench=table[:, WRENCH],
-        phase=sum(((stretch.name,) * len(stretch.rows) for stretch in stretches), ()),
-        posture=table[:, POSTURE] if table.shape[1] > _POSTURE else None,
-        task_rotation=table[:, AXES].reshape(count, 3, 3) if turning else None,
-    )

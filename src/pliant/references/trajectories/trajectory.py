@@ -195,3 +195,10 @@ def smooth_step(time: float, seconds: float) -> tuple[float, float, float]:
         return 1.0, 0.0, 0.0
     value = u * u * u * (10.0 - u * (15.0 - 6.0 * u))
     return value, 30.0 * (u * (1.0 - u)) ** 2 / seconds, 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / seconds**2
+
+
+def smooth_steps(times: Array, seconds: Array) -> tuple[Array, Array, Array]:
+    """`smooth_step` of many times (m,) s, each within its own `seconds` (m,)."""
+    u = np.minimum(np.maximum(times / seconds, 0.0), 1.0)
+    value = u * u * u * (10.0 - u * (15.0 - 6.0 * u))
+    return value, 30.0 * (u * (1.0 - u)) ** 2 / seconds, 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / seconds**2

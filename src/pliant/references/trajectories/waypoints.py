@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant.errors import ConfigError, ShapeError
-from pliant.references.trajectories.trajectory import Point, Trajectory, smooth_step, vector
+from pliant.references.trajectories.trajectory import Point, Trajectory, smooth_step, smooth_steps, vector
 from pliant.spatial import Array, unit
 
 SHAPES = ("step", "ramp", "smooth")
@@ -45,6 +45,9 @@ class Waypoints(Trajectory):
         self._values: Sequence[Array] = [vector(row, "a waypoint") for row in table]
         self._zero = vector(np.zeros(table.shape[1]), "zero")
         self._shape = shape
+        self._starts, self._table = instants, table
+        self._ways = np.diff(table, axis=0, append=table[-1:])
+        self._seconds = np.append(np.diff(instants), 1.0)
         self.size, self.duration = int(table.shape[1]), float(instants[-1])
 
     def at(self, time: float) -> Point:
@@ -62,12 +65,23 @@ class Waypoints(Trajectory):
 
     def rows(self, times: Array) -> Point:
         first, last = float(times.min(initial=np.inf)), float(times.max(initial=-np.inf))
-        if first < self._times[-1] and last >= self._times[0]:
-            return super().rows(times)
         shape = (len(times), self.size)
-        held = self._values[-1 if first >= self._times[-1] else 0]
         still = np.broadcast_to(self._zero, shape)
-        return Point(np.broadcast_to(held, shape), still, still)
+        if first >= self._times[-1] or last < self._times[0]:
+            held = self._values[-1 if first >= self._times[-1] else 0]
+            return Point(np.broadcast_to(held, shape), still, still)
+        pieces = np.searchsorted(self._starts, times, side="right") - 1
+        index = np.maximum(pieces, 0)
+        value = self._table[index]
+        if self._shape == "step":
+            return Point(value, still, still)
+        # no way to go before the first one and after the last
+        way = np.where((pieces < 0)[:, None], 0.0, self._ways[index])
+        since, seconds = times - self._starts[index], self._seconds[index]
+        if self._shape == "ramp":
+            return Point(value + way * (since / seconds)[:, None], way / seconds[:, None], still)
+        s, s_dot, s_ddot = (part[:, None] for part in smooth_steps(since, seconds))
+        return Point(value + s * way, s_dot * way, s_ddot * way)
 
 
 def wrench_steps(
