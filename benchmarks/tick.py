@@ -131,10 +131,10 @@ def worker(study: str, case: str, controller: str, duration: str, look: str) -> 
     with tempfile.TemporaryDirectory() as folder:
         argv = ["run", study, "--case", case, "--controller", controller, "--out", folder]
         sys.argv = ["pliant", *argv, "--set", f"duration={duration}"]
-        begin = time.process_time()
+        begin = sum(os.times()[:4])  # with children that have ended: pictures of a scene are drawn in one
         with contextlib.suppress(SystemExit):
             main()
-        found["run"] = time.process_time() - begin
+        found["run"] = sum(os.times()[:4]) - begin
         found["log"] = sum(path.stat().st_size for path in Path(folder).rglob("*.mcap"))
     found["peak"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
     return parts_of(found, controller.endswith("mpc")) if look == "parts" else whole_of(found, float(duration))

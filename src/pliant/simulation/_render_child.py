@@ -25,7 +25,7 @@ def main(folder: Path) -> None:
             _light_background(renderer)
             for line in job["lines"][job["lines"][:, 0] == index]:
                 _draw(renderer.scene, line)
-            pixels.append(_on_white(renderer.render(), renderer, data))
+            pixels.append(_on_white(renderer))
     np.save(folder / "pixels.npy", np.array(pixels))
 
 
@@ -59,14 +59,17 @@ def _draw(scene: mujoco.MjvScene, line: np.ndarray) -> None:
     scene.ngeom += 1
 
 
-def _on_white(picture: np.ndarray, renderer: mujoco.Renderer, data: mujoco.MjData) -> np.ndarray:
-    """Replaces the empty background, which is black, by white: depth tells which pixels are empty."""
-    renderer.enable_depth_rendering()
-    depth = renderer.render()
-    renderer.disable_depth_rendering()
-    result = picture.copy()
-    result[depth >= 0.999 * depth.max()] = 255
-    return result
+def _on_white(renderer: mujoco.Renderer) -> np.ndarray:
+    """The picture with white in place of the empty background, which is black: depth tells which pixels are empty. Both
+    are read from one drawing; the renderer's own methods would draw once for each."""
+    context, height, width = renderer._mjr_context, renderer.height, renderer.width
+    picture, depth = np.empty((height, width, 3), np.uint8), np.empty((height, width), np.float32)
+    area = mujoco.MjrRect(0, 0, width, height)
+    renderer._gl_context.make_current()
+    mujoco.mjr_render(area, renderer.scene, context)
+    mujoco.mjr_readPixels(picture, depth, area, context)
+    picture[depth <= 0.0] = 255  # the far end of the map that MuJoCo reads
+    return np.flipud(picture)
 
 
 if __name__ == "__main__":

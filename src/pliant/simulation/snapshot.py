@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ import numpy as np
 from pliant.spatial import Array
 
 _CHILD = Path(__file__).with_name("_render_child.py")
+_FLAT = 0.06  # widths of a line that its picture may be off: far less than a pixel, and a tenth of the segments
 _PATIENCE = 120.0  # s for one platform; a driver that does not respond counts as missing
 
 
@@ -110,9 +112,37 @@ def _pack(snapshots: Sequence[Snapshot], camera: Camera, width: int, height: int
     lines: list[list[float]] = []  # snapshot, kind (0 line, 1 arrow), width, from xyz, to xyz, rgba
     for index, snapshot in enumerate(snapshots):
         for path in snapshot.paths:
-            for a, b in zip(path.points[:-1], path.points[1:], strict=True):
+            for a, b in pairwise(thinned_path(path.points, _FLAT * path.width)):
                 lines.append([index, 0, path.width, *a, *b, *path.rgba])
         for arrow in snapshot.arrows:
             lines.append([index, 1, 0.012, *arrow.start, *(arrow.start + arrow.vector), *arrow.rgba])
     job["lines"] = np.array(lines).reshape(-1, 13)
     return job
+
+
+def thinned_path(points: Array, tolerance: float) -> Array:
+    """Corners of a path between which it is straight (Douglas and Peucker, 1973).
+
+    Args:
+        points: (k, 3) m.
+        tolerance: m that a left-out point may be off the line between the corners beside it.
+
+    Returns:
+        (j, 3) m, j ≤ k: a part of the points, the first and the last among them.
+    """
+    kept = np.zeros(len(points), bool)
+    kept[[0, -1] if len(points) else []] = True
+    spans = [(0, len(points) - 1)]
+    while spans:
+        begin, end = spans.pop()
+        if end - begin < 2:
+            continue
+        between, chord = points[begin + 1 : end] - points[begin], points[end] - points[begin]
+        share = np.clip(between @ chord / max(chord @ chord, 1e-300), 0.0, 1.0)
+        off = np.linalg.norm(between - share[:, None] * chord, axis=1)
+        farthest = int(np.argmax(off))
+        if not off[farthest] <= tolerance:  # a point that is no number stays
+            middle = begin + 1 + farthest
+            kept[middle] = True
+            spans += [(begin, middle), (middle, end)]
+    return points[kept]
