@@ -58,21 +58,22 @@ def test_rows_are_the_twins(columns: dict[str, Array]) -> None:
     made = topics(CHANNELS)
     ids, firsts = list(range(3, 3 + len(made))), [7 * i for i in range(len(made))]
     times = np.array([-1_500_000_000, -1, 0, 999_999_999, 3_000_000_001])
-    rows = RowPlan.of(made, ids).rows(np.abs(times), firsts, columns)
-    assert rows.tobytes() == in_python(made, ids, firsts, np.abs(times), columns)
+    data = RowPlan.of(made, ids).packed(b"head", np.abs(times), firsts, columns)
+    assert data == b"head" + in_python(made, ids, firsts, np.abs(times), columns)
     other = {**columns, "some/number": columns["some/number"] + 1.0}
-    assert rows.tobytes() != in_python(made, ids, firsts, np.abs(times), other)
+    assert data != b"head" + in_python(made, ids, firsts, np.abs(times), other)
 
 
 def test_places_are_where_the_messages_stand(columns: dict[str, Array]) -> None:
     made, times = topics(CHANNELS), np.arange(TICKS)
     ids = list(range(len(made)))
     plan = RowPlan.of(made, ids)
-    data = b"head" + plan.rows(times, ids, columns).tobytes()
+    data = bytes(plan.packed(b"head", times, ids, columns))
     index, begins = index_records(ids, plan.begins, times, len(plan.template), 4)
     places = plan.places(ids, TICKS, 4)
     for (channel, place), topic, begin in zip(places, made, begins, strict=True):
         assert place.times(data).tolist() == times.tolist()
+        assert [place.time(data, number) for number in (0, 2, -1)] == times[[0, 2, -1]].tolist()
         assert place.length == len(topic.template.data) == place.messages(data).shape[1]
         opcode, length, stated, size = INDEX.unpack_from(index, begin)
         assert (opcode, length, stated, size) == (7, 4 + 2 + 16 * TICKS, channel, 16 * TICKS)

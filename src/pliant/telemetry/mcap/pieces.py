@@ -48,9 +48,9 @@ class StoredChunk:
     start: int
     end: int
     recent: Recent
-    data: bytes | None = None
+    data: bytes | bytearray | None = None
 
-    def unpacked(self) -> bytes:
+    def unpacked(self) -> bytes | bytearray:
         return self.recent.get(self) if self.data is None else self.data
 
 
@@ -66,15 +66,20 @@ class Place:
     length: int
     """bytes of a message"""
 
-    def times(self, data: bytes) -> npt.NDArray[np.int64]:
+    def time(self, data: bytes | bytearray, number: int) -> int:
+        """Log time in ns of one message; −1: of the last."""
+        at = self.at + _TIME + number % self.count * self.stride
+        return int.from_bytes(data[at : at + 8], "little", signed=True)
+
+    def times(self, data: bytes | bytearray) -> npt.NDArray[np.int64]:
         """(count,) log times in ns."""
         return np.ascontiguousarray(self._rows(data, _TIME, 8)).view("<i8")[:, 0]
 
-    def messages(self, data: bytes) -> Bytes:
+    def messages(self, data: bytes | bytearray) -> Bytes:
         """(count, length) bytes."""
         return self._rows(data, MESSAGE.size, self.length)
 
-    def _rows(self, data: bytes, start: int, length: int) -> Bytes:
+    def _rows(self, data: bytes | bytearray, start: int, length: int) -> Bytes:
         rest = np.frombuffer(data, dtype=np.uint8)[self.at + start :]
         return np.lib.stride_tricks.as_strided(rest, (self.count, length), (self.stride, 1), writeable=False)
 
@@ -102,8 +107,8 @@ class Piece:
 
     def ends(self) -> tuple[int, int]:
         """Log times of the first message and of the last, ns."""
-        first, last = (self.place.times(self.chunks[at].unpacked()) for at in (0, -1))
-        return int(first[0]), int(last[-1])
+        first, last = (self.place.time(self.chunks[at].unpacked(), at) for at in (0, -1))
+        return first, last
 
     def messages(self, begin: int, end: int) -> Iterator[tuple[int, Bytes]]:
         """Those from one number to another, chunk by chunk: (k, length) bytes, and the number of the first."""

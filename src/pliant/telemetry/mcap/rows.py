@@ -55,21 +55,25 @@ class RowPlan:
         lengths = tuple([len(topic.template.data) for topic in topics])
         return cls(bytes(row), tuple(begins), tuple(stamps), lengths, tuple(numbers))
 
-    def rows(
-        self, times: npt.NDArray[np.int64], firsts: Iterable[int], columns: Mapping[str, Array]
-    ) -> npt.NDArray[np.uint8]:
-        """(n, bytes per tick) message records.
+    def packed(
+        self, head: bytes, times: npt.NDArray[np.int64], firsts: Iterable[int], columns: Mapping[str, Array]
+    ) -> bytearray:
+        """The content of a chunk: its head, and n rows of message records behind it.
 
         Args:
+            head: bytes before the rows.
             times: (n,) log time in ns.
             firsts: sequence number of each topic's first message.
             columns: channel → (n, …) values.
         """
-        rows = np.empty((len(times), len(self.template)), dtype=np.uint8)
+        width = len(self.template)
+        data = bytearray(len(head) + len(times) * width)
+        data[: len(head)] = head
+        rows = np.frombuffer(data, dtype=np.uint8, offset=len(head)).reshape(len(times), width)
         records = list(zip(self.begins, firsts, self.stamps, strict=True))
         numbers = [(columns[name].reshape(len(times), -1), places) for name, places in self.numbers]
         pack(self.template, records, numbers, np.ascontiguousarray(times), rows)
-        return rows
+        return data
 
     def places(self, ids: Sequence[int], count: int, first: int) -> tuple[tuple[int, Place], ...]:
         """Where messages stand in a chunk. Args: ids; count: rows; first: byte at which the first of them begins."""

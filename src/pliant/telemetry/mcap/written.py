@@ -25,7 +25,7 @@ class Written:
         if self._contents is not None:
             self._contents.metadata[name] = dict(data)
 
-    def chunk(self, data: bytes, groups: Iterable[tuple[tuple[int, Place], ...]]) -> None:
+    def chunk(self, data: bytes | bytearray, groups: Iterable[tuple[tuple[int, Place], ...]]) -> None:
         """A chunk, unpacked.
 
         Args:
