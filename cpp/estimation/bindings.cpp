@@ -9,6 +9,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bind_chain.hpp"
+#include "bind_part.hpp"
 #include "bind_stages.hpp"
 
 using namespace pliant::estimation;
@@ -16,4 +17,5 @@ using namespace pliant::estimation;
 NB_MODULE(_estimation, m) {
   bind_stages(m);
   bind_chain(m);
+  bind_part(m);
 }

@@ -27,9 +27,35 @@ inline double spendable_of(nb::handle diagnostics, const nb::str& channel) {
   return found;
 }
 
-// `out` gets the torque and the clamped torque, (n) each; where the controller's channels are numbers in a row, these,
-// the energy that the bound withheld [J] and by how much it is exceeded. None: nothing was held back; else the last of
-// these.
+// What a controller asked for, and where its joints are.
+struct CommandRow {
+  const double *torque, *clamped, *q;
+  const double* channels;  // null: they are no numbers in a row
+  int size;                // of them
+};
+
+// One step. `out` gets the torque and the clamped torque, (n) each; where the controller's channels are numbers in a
+// row, these, the energy that the bound withheld [J] and by how much it is exceeded. Returns whether a part was held
+// back. spendable() [J] is asked for only then.
+template <class Spendable>
+bool limited(const StepLimit& limit, const CommandRow& asked, const Spendable& spendable, double* memory, double* out,
+             double& exceeded) {
+  const int n = limit.n();
+  double* taken = out + n;
+  const StepLimit::Outcome outcome = limit.step(asked.torque, asked.q, memory, out);
+  exceeded = outcome.held_back ? limit.give_way(outcome, spendable(), asked.torque, memory, out) : 0;
+  const double* held = limit.held_back(memory);
+  for (int j = 0; j < n; ++j) taken[j] = asked.clamped[j] + held[j];
+  limit.keep(out, memory);
+  if (asked.channels) {
+    double* last = std::copy(asked.channels, asked.channels + asked.size, taken + n);
+    last[0] = limit.energy(memory);
+    last[1] = exceeded;
+  }
+  return outcome.held_back;
+}
+
+// None: nothing was held back; else by how much the bound is exceeded.
 inline std::optional<double> step_limit(const StepLimit& limit, nb::handle torque, nb::handle clamped, nb::handle q,
                                         nb::handle diagnostics, const nb::str& channel,
                                         const std::optional<ConstRow>& channels, const Row& memory, const Row& out) {
@@ -39,21 +65,12 @@ inline std::optional<double> step_limit(const StepLimit& limit, nb::handle torqu
   if (out.size() != size_t(2 * n) + more)
     throw std::invalid_argument("out must have two entries per joint, and two more than the channels");
   Numbers numbers[3];
-  const double* wanted = numbers[0].vector(torque, "torque", n);
-  const double* lost = numbers[1].vector(clamped, "clamped", n);
-  double *sent = out.data(), *taken = sent + n;
-  const StepLimit::Outcome outcome = limit.step(wanted, numbers[2].vector(q, "q", n), memory.data(), sent);
-  const double exceeded =
-      outcome.held_back ? limit.give_way(outcome, spendable_of(diagnostics, channel), wanted, memory.data(), sent) : 0;
-  const double* held = limit.held_back(memory.data());
-  for (long j = 0; j < n; ++j) taken[j] = lost[j] + held[j];
-  limit.keep(sent, memory.data());
-  if (channels) {
-    double* last = std::copy(channels->data(), channels->data() + channels->size(), taken + n);
-    last[0] = limit.energy(memory.data());
-    last[1] = exceeded;
-  }
-  return outcome.held_back ? std::optional(exceeded) : std::nullopt;
+  const CommandRow asked{numbers[0].vector(torque, "torque", n), numbers[1].vector(clamped, "clamped", n),
+                         numbers[2].vector(q, "q", n), channels ? channels->data() : nullptr,
+                         channels ? int(channels->size()) : 0};
+  double exceeded = 0;
+  const auto spendable = [&] { return spendable_of(diagnostics, channel); };
+  return limited(limit, asked, spendable, memory.data(), out.data(), exceeded) ? std::optional(exceeded) : std::nullopt;
 }
 
 inline void bind_step_limit(nb::module_& m) {

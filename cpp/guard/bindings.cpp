@@ -2,6 +2,7 @@
 // sound beyond doubt; where it says no, src/pliant/guard/sound.py finds out
 // what is wrong, or that nothing is.
 #include "bind_step_limit.hpp"
+#include "bind_step_limit_part.hpp"
 #include "numbers.hpp"
 
 namespace {
@@ -184,4 +185,5 @@ NB_MODULE(_guard, m) {
   m.def("is_reference", &is_reference, "reference"_a, "n"_a);
   m.def("is_command", &is_command, "command"_a, "n"_a, "bound"_a.none());
   pliant::guard::bind_step_limit(m);
+  pliant::guard::bind_step_limit_part(m);
 }

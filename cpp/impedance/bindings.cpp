@@ -1,9 +1,11 @@
 // Python face of the impedance core.
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <string>
 
+#include "bind_part.hpp"
 #include "bind_robot.hpp"
 #include "drive.hpp"
 
@@ -131,6 +133,7 @@ NB_MODULE(_impedance, m) {
       .def("step_on", &step_on, nb::arg("arm"), nb::arg("memory"), nb::arg("out"), nb::arg("estimate"),
            nb::arg("targets"), nb::arg("seen").none(), nb::arg("bias").none(), nb::arg("retune").none());
   nb::class_<Arm>(m, "Arm").def(nb::init<nb::object, std::vector<nb::str>>(), nb::arg("robot"), nb::arg("frames"));
+  bind_part(m);
   m.def("drive_axis", &drive_axis, nb::arg("law"), nb::arg("period"), nb::arg("rate_gain"), nb::arg("noise_gain"),
         nb::arg("hold_limit"), nb::arg("blend_step"), nb::arg("account").none(), nb::arg("shape"), nb::arg("tuning"),
         nb::arg("rate_floor"), nb::arg("rotates"), nb::arg("errors"), nb::arg("forces"), nb::arg("balances"));

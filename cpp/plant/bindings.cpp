@@ -2,6 +2,7 @@
 #include "bind_imperfect_robot.hpp"
 #include "bind_physics.hpp"
 #include "bind_truth.hpp"
+#include "bind_world.hpp"
 
 using namespace pliant::plant;
 
@@ -33,4 +34,5 @@ NB_MODULE(_plant, m) {
       .def("sense", &PyImperfectRobot::sense, "memory"_a.noconvert(), "draw"_a, "now"_a, "out"_a.noconvert())
       .def("period", &PyImperfectRobot::period, "memory"_a.noconvert(), "draws"_a, "robot"_a, "data"_a, "command"_a,
            "pushes"_a, "out"_a.noconvert());
+  bind_world(m);
 }

@@ -27,6 +27,15 @@ void at(const Spline& spline, double time, const Packed<double, 1>& out) {
   spline.at(time, out.data());
 }
 
+void rows(const Spline& spline, const Packed<const double, 1>& times, const Packed<double, 2>& out) {
+  if (out.shape(0) != times.size() || out.shape(1) != spline.width())
+    throw std::invalid_argument("there must be a row of the spline's width for every time");
+  for (size_t i = 0; i < times.size(); ++i) {
+    if (times.data()[i] != times.data()[i]) throw std::invalid_argument("a time must be a number");
+    spline.at(times.data()[i], out.data() + i * spline.width());
+  }
+}
+
 nb::object row(RowsAhead& rows, double time, double period) {
   const double* now = rows.now(time, period);
   nb::object made = pliant::new_array({npy_intp(rows.width())});
@@ -50,7 +59,8 @@ NB_MODULE(_references, m) {
   m.doc() = "Functions of time that a loop asks for in each tick.";
   nb::class_<Spline>(m, "Spline")
       .def("__init__", &build, nb::keep_alive<1, 4>(), "times"_a, "step"_a, "pieces"_a.noconvert(), "first"_a, "last"_a)
-      .def("at", &at, "time"_a, "out"_a.noconvert());
+      .def("at", &at, "time"_a, "out"_a.noconvert())
+      .def("rows", &rows, "times"_a, "out"_a.noconvert());
   nb::class_<RowsAhead>(m, "RowsAhead")
       .def(nb::init<nb::object, double>(), "rows"_a, "rounding"_a)
       .def("row", &row, "time"_a, "period"_a)

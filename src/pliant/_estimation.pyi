@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from pliant._loop import Part
 from pliant.spatial import Array
 
 FIT_SIZE: int
@@ -177,3 +178,12 @@ class Chain:
 
     def step(self, measurement: Any, estimate: Any, memory: Array, out: Array) -> tuple[str, float, float] | None:
         """Writes the next memory and the estimate. Returns a fault with two numbers, or None."""
+
+class ChainPart(Part):
+    """A chain as a part of a compiled loop."""
+
+    def __init__(
+        self, stages: Sequence[Stage], n: int, frames: Sequence[str], measured: Sequence[int], begin: int
+    ) -> None:
+        """Args: stages; number of joints; frames of the sensors; where a row has the measurement's time, q, v, torque,
+        torque sent and wrenches; where the estimate begins, in the order of `Chain.step`."""

@@ -6,6 +6,7 @@ True: the signal is sound beyond doubt, made of NumPy's own arrays of float64. F
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pliant._loop import Part
 from pliant.spatial import Array
 
 def is_reading(reading: Any, n: int, frames: tuple[str, ...]) -> bool:
@@ -57,3 +58,11 @@ class StepLimit:
         Returns:
             By how much the bound is exceeded, as a share of it; None: the torque is as it was asked for.
         """
+
+class StepLimitPart(Part):
+    """The bound as a part of a compiled loop, round a controller that is one, too."""
+
+    def __init__(self, limit: StepLimit, inner: Part, q: int, command: Sequence[int], begin: int) -> None:
+        """Args: the bound; the controller inside; where a row has the estimated joints (n); where it has the inner
+        command's torque, clamped torque, channels and the J that may be spent (-1: nobody says), with the number of
+        channels before the last of these; where its own numbers begin, in the order of `StepLimit.step`."""

@@ -6,6 +6,8 @@ from typing import Any
 from numpy import float64
 from numpy.typing import NDArray
 
+from pliant._loop import Part
+
 ENERGIES: tuple[str, ...]
 """names of the totals in `out`, after torque and clamped torque (n) each"""
 AXIS_ROWS: tuple[str, ...]
@@ -147,3 +149,13 @@ def drive_axis(
         forces: (steps, trials), filled: N or N·m, held until the next step.
         balances: (steps, trials), filled: of the account, J.
     """
+
+class StackPart(Part):
+    """A stack on an arm as a part of a compiled loop, with tunings and axes that do not change."""
+
+    def __init__(
+        self, stack: Stack, arm: Arm, q: int, targets: Sequence[tuple[int, int, Sequence[float]]], begin: int
+    ) -> None:
+        """Args: the stack and its arm, which are copied; where a row has the estimated joints (n); of each task, where
+        its position and its rotation stand, or -1 and the rotation (9,) that does not change, or nothing; where its own
+        numbers begin, in the order of `Stack.step`."""

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from pliant._loop import World
 from pliant.spatial import Array
 
 MUJOCO_VERSION: int
@@ -157,3 +158,17 @@ class ImperfectRobot:
     ) -> int:
         """A whole period round a compiled robot, without the GIL: writes a reading and the robot's own outcome.
         Returns what `Physics.step` returns."""
+
+class SimulatedRobot(World):
+    """A simulated robot as the world of a compiled loop. Raises ValueError: values that do not fit it."""
+
+    def __init__(self, physics: Physics, truth: TruthRow, data: Any, period: float, at: Sequence[int]) -> None:
+        """Args: the robot; what is true of it; its MuJoCo data; control period, s; where a row has its time, the
+        command's torque, the outcome of a period and what is true."""
+
+    @property
+    def touching(self) -> int:
+        """What `Physics.step` returned for the last period."""
+
+    def begin(self, periods: int, pushes: Sequence[tuple[int, Sequence[float], float, float]]) -> None:
+        """A block begins. Args: periods since the start; pushes beside those of the robot."""

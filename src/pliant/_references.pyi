@@ -24,6 +24,9 @@ class Spline:
     def at(self, time: float, out: Array) -> None:
         """Writes every column (width,) at a time in s. Raises ValueError for a row of another width, or no number."""
 
+    def rows(self, times: Array, out: Array) -> None:
+        """Writes every column at times (k,) in s into `out` (k, width). Errors as of `at`."""
+
 class RowsAhead:
     """Rows of a function of time, worked out once for each tick of a clock, 128 ticks in one go. A cache: what it gives
     depends on the time asked for, not on what was asked before."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from pliant.blocks import Blocks, Ran, Standing
 from pliant.errors import ConfigError, PliantError, RobotError, RunFailedError, ShapeError, told
 from pliant.guard import Fault, Guard
 from pliant.guard.border import Watched
@@ -66,8 +67,9 @@ def run(
     guard = Guard(plant, robot)
     measurement, world = plant.init()
     cycle = _Cycle(guard, estimator, source, controller)
-    ticks = 0
-    for _ in clock:
+    blocks = Blocks(plant, estimator, source, controller, observers, guard.bound)
+    ticks, periods = 0, iter(clock)
+    for _ in periods:
         try:
             estimate, reference, command, wall, fault = cycle.step(measurement)
             seen = guard.shown(fault, measurement, cycle.watched) if fault else measurement
@@ -83,6 +85,12 @@ def run(
         except _WHATEVER as error:
             return _ended(ticks, cycle.now, error)
         ticks += 1
+        while blocks.possible and (ran := blocks.run(cycle.standing(measurement, world), periods)):
+            ticks, measurement = ticks + ran.ticks, ran.at.measurement
+            cycle.take(ran)
+            blocks.show(ran)
+            if stopped := _stopped(ran):
+                return _ended(ticks - 1, cycle.now, stopped)
     return Outcome(ticks, measurement.time)
 
 
@@ -109,6 +117,22 @@ class _Cycle:
         """State of the guard, from the first measurement on."""
         assert self._watched is not None
         return self._watched
+
+    def standing(self, measurement: Measurement, world: Any) -> Standing:
+        """Where the loop stands before a measurement's tick, after the first one."""
+        assert self._estimate is not None
+        assert self._reference is not None
+        assert self.command is not None
+        states = (self._est, self._ref, self._ctl)
+        return Standing(measurement, world, self._estimate, self._reference, self.command, states)
+
+    def take(self, ran: Ran) -> None:
+        """Goes on after a block of ticks."""
+        at = ran.at
+        self._estimate, self._reference, self.command = at.estimate, at.reference, at.command
+        self._est, self._ref, self._ctl = at.states
+        self.now = ran.reading.time
+        self._guard.passed(ran.reading, at.command.torque, self.watched)
 
     def step(self, measurement: Measurement) -> tuple[Estimate, Reference, Command, dict[str, float], Fault]:
         """The signals of a tick, the wall time of its stages in s, and its fault. Raises what a part raises."""
@@ -144,6 +168,15 @@ def _pair(answer: tuple[_Signal, Any], part: str) -> tuple[_Signal, Any]:
     if isinstance(answer, tuple) and len(answer) == 2:  # pyright: ignore[reportUnnecessaryIsInstance, reportUnnecessaryComparison] (somebody's own part)
         return answer
     raise ConfigError(f"the {part}'s step must return two things, its signal and its next state, got {answer!r:.80}")
+
+
+def _stopped(ran: Ran) -> BaseException | None:
+    """Why the plant stopped in the last period of a block; None: it did not."""
+    try:
+        ran.land()
+    except _WHATEVER as error:
+        return error
+    return None
 
 
 def _ended(ticks: int, now: float, error: BaseException) -> Outcome:

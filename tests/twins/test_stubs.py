@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 import pliant
-from pliant import _contact, _estimation, _guard, _impedance, _mpc, _plant, _references, _telemetry, _values
+from pliant import _contact, _estimation, _guard, _impedance, _loop, _mpc, _plant, _references, _telemetry, _values
 
-CORES = [_contact, _estimation, _guard, _impedance, _mpc, _plant, _references, _telemetry, _values]
+CORES = [_contact, _estimation, _guard, _impedance, _loop, _mpc, _plant, _references, _telemetry, _values]
 SCALARS = ("int", "float", "bool", "str", "None")
 
 

@@ -10,14 +10,14 @@ import numpy as np
 import pinocchio as pin
 
 from pliant import _impedance
-from pliant.axis_modes import AxisModes
 from pliant.controllers.attractor import Law
+from pliant.controllers.compiled_stack import CompiledStack
 from pliant.controllers.damping import Damping
 from pliant.controllers.energy_ledger import LedgerChannel, channel_table, layout_of, require_length
 from pliant.controllers.passivity_account import AccountSettings
 from pliant.controllers.phase_settings import PhaseSettings
 from pliant.controllers.profiles import linear_range
-from pliant.controllers.stack_input import check_stack, free_axes, joints_that_move, loosened, target_of
+from pliant.controllers.stack_input import Seen, check_stack, free_axes, joints_that_move, loosened, seen_of, target_of
 from pliant.controllers.task import FrameTask
 from pliant.errors import ShapeError, SignalError
 from pliant.flat_channels import FlatChannels
@@ -41,8 +41,7 @@ class StackState:
 class _Tuned:
     """Active tunings, and what of the references they follow from: while that is the same, so are they."""
 
-    seen: tuple[tuple[ImpedanceTuning | None, AxisModes | None, bool | None], ...]
-    """of each task's reference: tuning, modes, and whether it has no rotation (None: nothing was seen yet)"""
+    seen: Seen
     tunings: tuple[ImpedanceTuning | None, ...]
     free: tuple[tuple[bool, ...], ...]
     """of each task, which axes are free; empty: none"""
@@ -179,9 +178,16 @@ class Stack(Controller[StackState]):
             raise ShapeError(self._misshapen(estimate, self._targets(reference), error)) from error
         if code:
             raise SignalError(self._not_finite(code, estimate))
+        return self._command(estimate.time, out), StackState(memory, tuned)
+
+    def compiled_face(self, estimate: Estimate) -> CompiledStack | None:
+        if self._biased:
+            return None
+        return CompiledStack(self._core, self._arm, self._names, self._size, self._command)
+
+    def _command(self, time: float, out: Array) -> Command:
         n = self._n
-        channels = FlatChannels(self._layout, out[2 * n :])
-        return Command(estimate.time, out[:n], out[n : 2 * n], channels), StackState(memory, tuned)
+        return Command(time, out[:n], out[n : 2 * n], FlatChannels(self._layout, out[2 * n :]))
 
     def _targets(self, reference: Reference) -> tuple[TaskReference, ...]:
         return tuple([target_of(reference, i, task.frame) for i, task in enumerate(self.tasks)])
@@ -207,8 +213,7 @@ class Stack(Controller[StackState]):
 
     def _tuned(self, targets: Sequence[TaskReference]) -> _Tuned:
         tunings = tuple([target.tuning or task.tuning for task, target in zip(self.tasks, targets, strict=True)])
-        seen = tuple([(target.tuning, target.modes, target.rotation is None) for target in targets])
-        return _Tuned(seen, tunings, tuple([free_axes(target) for target in targets]))
+        return _Tuned(seen_of(targets), tunings, tuple([free_axes(target) for target in targets]))
 
     def _changed(self, last: _Tuned, now: _Tuned) -> tuple[tuple[int, Array], ...] | None:
         changes: list[tuple[int, Array]] = []

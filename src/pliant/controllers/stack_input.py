@@ -8,10 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from pliant.axis_modes import AxisModes
 from pliant.controllers.task import FrameTask
 from pliant.errors import ConfigError, options
 from pliant.robot import Robot
 from pliant.signals import ImpedanceTuning, Reference, TaskReference
+
+Seen = tuple[tuple[ImpedanceTuning | None, AxisModes | None, bool | None], ...]
+"""of each task's reference: tuning, modes, and whether it has no rotation (None: nothing was seen yet)"""
+
+
+def seen_of(targets: Sequence[TaskReference]) -> Seen:
+    """What of references the tunings of a stack follow from."""
+    return tuple([(target.tuning, target.modes, target.rotation is None) for target in targets])
 
 
 def target_of(reference: Reference, place: int, frame: str) -> TaskReference:

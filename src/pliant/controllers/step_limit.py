@@ -9,6 +9,8 @@ from typing import Annotated, Any
 import numpy as np
 
 from pliant import _guard
+from pliant.compiled import CompiledController, face_of
+from pliant.controllers.compiled_step_limit import CompiledStepLimit
 from pliant.errors import ConfigError
 from pliant.flat_channels import FlatChannels, FlatLayout
 from pliant.frozen import quick
@@ -124,6 +126,10 @@ class StepLimit(Controller[StepLimitState]):
         else:
             channels = {**given, **dict(zip(CHANNELS, (float(memory[-1]), exceeded or 0.0), strict=True))}
         return Command(command.time, out[:n], out[n : 2 * n], channels), StepLimitState(inner, memory)
+
+    def compiled_face(self, estimate: Estimate) -> CompiledStepLimit | None:
+        inner = face_of(self.inner, CompiledController, estimate)
+        return None if inner is None else CompiledStepLimit(self._core, inner, self._n, self._followed, SPENDABLE)
 
     def _followed(self, layout: FlatLayout) -> FlatLayout:
         """The inner controller's layout with the channels of the bound."""

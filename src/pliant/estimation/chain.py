@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from pliant._estimation import Chain, Stage
 from pliant._values import Views
 from pliant.environment import Environment
 from pliant.errors import PliantError, SignalError
+from pliant.estimation.compiled_chain import CompiledChain
 from pliant.frozen import changed, quick
 from pliant.interfaces import Estimator
 from pliant.named_rows import NamedRows
@@ -101,6 +103,13 @@ class ChainedEstimator(Estimator[ChainState]):
             raise _refused(refusal)
         found = self._found(bound, measurement, out) if given is None else self._completing(bound, given, out)
         return found, ChainState(completed, state.frames, memory)
+
+    def compiled_face(self, measurement: Measurement, state: ChainState) -> CompiledChain | None:
+        if self._completed is not None or self.environment is not None:
+            return None  # somebody else's estimates, or a surface that only Python may know
+        bound = self._for(measurement.q.size, state.frames)
+        found = partial(self._found, bound)
+        return CompiledChain(self._stages, state.frames, bound.size, found)
 
     # ------------------------------------------------------------------ inside
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from pliant.compiled import Rows
 from pliant.errors import ConfigError
 from pliant.experiments.base import CaseConfig, Experiment, Result, Study
 from pliant.experiments.drawn import drawn_scene
@@ -135,7 +136,13 @@ class _Reporter:
         self._count, self._next = 0, 0.0
 
     def __call__(self, tick: Tick) -> None:
-        self._count += 1
+        self._passed(1)
+
+    def block(self, rows: Rows) -> None:
+        self._passed(len(rows.numbers))
+
+    def _passed(self, ticks: int) -> None:
+        self._count += ticks
         now = time.monotonic()
         if now >= self._next or self._count == self._ticks:
             self._next = now + 0.1

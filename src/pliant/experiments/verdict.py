@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from pliant.compiled import Rows
 from pliant.estimation import start_hints
 from pliant.robot import Robot
 from pliant.signals import Tick
@@ -43,6 +44,10 @@ class StartNotes:
         if self.sentences is None:
             free = tick.truth is None or not any(np.any(wrench) for wrench in tick.truth.wrenches.values())
             self.sentences = start_hints(tick.estimate) if free else ()
+
+    def block(self, rows: Rows) -> None:
+        if self.sentences is None:
+            self(rows.first())
 
 
 def _limit_passed(log: Log, robot: Robot) -> str | None:

@@ -155,6 +155,17 @@ class Guard:
             return command if clamped is command.clamped else replace(command, clamped=clamped), Fault.NONE
         return replace(command, torque=within, clamped=clamped + command.torque - within), Fault.BEYOND_LIMIT
 
+    @property
+    def bound(self) -> Array | None:
+        """(n,) N·m beyond which a torque is cut off; None: no limit is known."""
+        return self._bound
+
+    def passed(self, reading: Measurement, torque: Array, watched: Watched) -> None:
+        """Takes over from ticks in which nothing was to be found, by reading and torque (n,) N·m of the last one."""
+        watched.seen, watched.reading, watched.missed, watched.faults = True, reading, 0, 0
+        watched.q, watched.v = reading.q.copy(), reading.v.copy()
+        watched.estimated, watched.torque = reading.time, torque.copy()
+
     def now(self, reading: Measurement, watched: Watched) -> float:
         """The time of a reading, sound or not; that of the last sound one if it has none. In s."""
         return reading.time if math.isfinite(reading.time) else watched.reading.time

@@ -82,10 +82,12 @@ class CompiledPeriod:
         self.n = len(limit)
         self.size = self.core.outcome_size
         """numbers of a period's outcome"""
-        self.joints = Views([(0, self.n), (self.n, self.n)]).of
-        """a period's outcome → views of the joints' positions and velocities, (n,) each"""
-        self._wrenches = NamedRows(self.contacts, 3 * self.n, 6)
-        self.readings = NamedRows(self.sensors, self._wrenches.end, 6).of
+        self.signals = Views([(i * self.n, self.n) for i in range(3)]).of
+        """a period's outcome → views of the joints' positions, velocities and torques, (n,) each"""
+        felt = NamedRows(self.contacts, 3 * self.n, 6)
+        self.wrenches = felt.of
+        """a period's outcome → frame of each contact → wrench (6,)"""
+        self.readings = NamedRows(self.sensors, felt.end, 6).of
         """a period's outcome → frame of each sensor → what it reads (6,)"""
         self._touching: dict[int, frozenset[str]] = {}
 
@@ -109,9 +111,8 @@ class CompiledPeriod:
 
     def keep(self, world: World, out: Array, mask: int) -> None:
         """Writes a period's outcome (`size`,) and the contacts into the world."""
-        n = self.n
-        world.torque = out[2 * n : 3 * n]
-        world.wrenches = self._wrenches.of(out)
+        _, _, world.torque = self.signals(out)
+        world.wrenches = self.wrenches(out)
         touching = self._touching.get(mask)
         if touching is None:
             touching = frozenset(frame for bit, frame in enumerate(self.contacts) if mask >> bit & 1)

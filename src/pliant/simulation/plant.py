@@ -12,7 +12,8 @@ from pliant.errors import RunFailedError
 from pliant.interfaces import Compensation, Plant
 from pliant.robot import Robot
 from pliant.signals import Command, Measurement, Truth
-from pliant.simulation.compiled_period import CompiledPeriod
+from pliant.simulation.compiled_period import CompiledPeriod, compiled_period_of
+from pliant.simulation.compiled_robot import CompiledRobot
 from pliant.simulation.compiled_world import WorldParts
 from pliant.simulation.contact.explicit import explicit_contacts
 from pliant.simulation.contact.pairs import can_move, pairs_of
@@ -134,8 +135,8 @@ class MujocoPlant(Plant[World]):
         if self.compiled is not None:
             out, touching = self.compiled.step(world, command.torque)
             time = self.passed(world, 1, out, touching)
-            q, v = self.compiled.joints(out)
-            return Measurement(time, q, v, world.torque, world.torque, self.compiled.readings(out)), world
+            q, v, torque = self.compiled.signals(out)
+            return Measurement(time, q, v, torque, torque, self.compiled.readings(out)), world
         world.torque = clamp(command.torque, -self._limit, self._limit)
         self._loop.step(world)
         world.ticks += 1
@@ -160,6 +161,12 @@ class MujocoPlant(Plant[World]):
         assert self.compiled is not None
         self.compiled.keep(world, out, touching)
         return world.ticks * self.period
+
+    def compiled_face(self, world: World) -> CompiledRobot | None:
+        core, compiled = self._truth.core, compiled_period_of(self)
+        if core is None or compiled is None:
+            return None
+        return CompiledRobot(compiled, self._truth, core, world, self.period, self.passed)
 
     def truth(self, world: World) -> Truth:
         return self._truth.truth(world, world.ticks * self.period)

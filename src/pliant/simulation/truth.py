@@ -42,23 +42,28 @@ class TruthReader:
         self._positions = NamedRows(tuple(sites), 4 * n, 3)
         self._rotations = NamedRows(tuple(sites), self._positions.end, 3, 3)
         self._poses = NamedRows(tuple(bodies), self._rotations.end, 7)
+        self.core: TruthRow | None = None
+        """what reads it compiled"""
         self.row = self.in_python
         """data → numbers of its truth: q, v, torque, excess; positions, rotations, poses"""
         if can_look_inside():
-            self._compiled_row = TruthRow(model, lower.tolist(), upper.tolist(), [*sites.values()], [*bodies.values()])
-            self._size = self._compiled_row.size
+            self.core = TruthRow(model, lower.tolist(), upper.tolist(), [*sites.values()], [*bodies.values()])
             self.row = self._compiled
 
     def truth(self, world: World, time: float) -> Truth:
         """The truth of a world at a time in s."""
-        row = self.row(world.data)
+        return self.of(self.row(world.data), time, dict(world.wrenches))
+
+    def of(self, row: Array, time: float, wrenches: Mapping[str, Array]) -> Truth:
+        """The truth of a row of numbers at a time in s, with the wrench (6,) of each contact frame."""
         q, v, torque, excess = self._joints.of(row)
         positions, rotations, poses = self._positions.of(row), self._rotations.of(row), self._poses.of(row)
-        return Truth(time, q, v, torque, positions, rotations, dict(world.wrenches), poses, excess)
+        return Truth(time, q, v, torque, positions, rotations, wrenches, poses, excess)
 
     def _compiled(self, data: mujoco.MjData) -> Array:
-        row = np.empty(self._size)
-        self._compiled_row.read(data, row)
+        assert self.core is not None
+        row = np.empty(self.core.size)
+        self.core.read(data, row)
         return row
 
     def in_python(self, data: mujoco.MjData) -> Array:

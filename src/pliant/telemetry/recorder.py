@@ -15,6 +15,7 @@ from typing import BinaryIO, Self
 
 import numpy as np
 
+from pliant.compiled import Rows
 from pliant.errors import ConfigError, OutputError, ShapeError
 from pliant.signals import Tick
 from pliant.telemetry.channels import Channel
@@ -97,16 +98,26 @@ class Recorder:
             ConfigError: two channels have the same name.
             ShapeError: a diagnostic is neither a number nor an array, or a signal has an array of a wrong size.
         """
-        seen = self._seen
-        self._seen = seen + 1
         if tick.wall:
             self.timing.add(tick.wall)
-        if seen % self._decimation:
-            return
+        self._seen += 1
+        if (self._seen - 1) % self._decimation == 0:
+            self._record(tick)
+
+    def block(self, rows: Rows) -> None:
+        """Records ticks of a block; errors as of a single one."""
+        kept = rows.numbers[-self._seen % self._decimation :: self._decimation]
+        self._seen += len(rows.numbers)
+        self.timing.add_block(rows.wall)
+        while len(kept):
+            block = self._record(rows.tick(kept[0]))
+            kept = kept[1 + block.add_rows(kept[1:], rows.tick) :]
+
+    def _record(self, tick: Tick) -> Block:
         if self._error is not None:
             raise self._failure(self._error)
-        if self._block is None or not self._block.add(tick):
-            self._begin_block(tick)
+        block = self._block
+        return block if block is not None and block.add(tick) else self._begin_block(tick)
 
     def log(self) -> Log:
         """Closes the recorder and reads what it wrote.
@@ -170,22 +181,21 @@ class Recorder:
 
     # ------------------------------------------------------------------ in the loop
 
-    def _begin_block(self, tick: Tick) -> None:
+    def _begin_block(self, tick: Tick) -> Block:
         """A block whose first row is this tick."""
         self._send()
-        phase = tick.reference.phase
-        for layout in self._layouts:
-            block = Block(layout, phase, _BLOCK)
-            if block.add(tick):
-                self._block = block
-                return
+        known = (Block(layout, tick.reference.phase, _BLOCK) for layout in self._layouts)
+        self._block = next((block for block in known if block.add(tick)), None) or self._new_layout(tick)
+        return self._block
+
+    def _new_layout(self, tick: Tick) -> Block:
         layout = self._layout(tick)
-        block = Block(layout, phase, _BLOCK)
+        block = Block(layout, tick.reference.phase, _BLOCK)
         if not block.add(tick):
             misfit = layout.misfit(layout.row.fill(tick, block.rows, 0))
             raise ShapeError(f"a tick cannot be recorded: {misfit} has another size than such a signal must have")
         self._layouts.appendleft(layout)
-        self._block = block
+        return block
 
     def _send(self) -> None:
         if self._block is not None and self._block.count and self._error is None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any, Self
 
 import numpy as np
+import numpy.typing as npt
 
 from pliant._telemetry import Row
 from pliant.flat_channels import FlatChannels
@@ -29,6 +30,9 @@ _MAPPINGS = {
 _OPTIONAL = (("estimate", "disturbance"), ("reference", "posture"), ("truth", "limit_excess"))
 
 
+_Known = dict[Callable[[Array], Tick], "Copied | None"]
+
+
 @dataclass(frozen=True)
 class RowLayout:
     """How a tick lies in a row: one channel after the other."""
@@ -37,6 +41,15 @@ class RowLayout:
     channels: tuple[Channel, ...]
     """in the order of a row"""
     topics: list[Topic]
+    known: _Known = field(default_factory=dict[Callable[[Array], Tick], "Copied | None"])
+    """what makes ticks of a block → where their numbers stand in a row"""
+
+    def copied(self, tick: Callable[[Array], Tick], size: int) -> Copied | None:
+        """Which numbers of a block's row (size,) are which of a log's row; None: not all of them are copies."""
+        if tick not in self.known:
+            self.known.clear()  # ticks of another structure do not come again
+            self.known[tick] = _copied(self.row, tick, size)
+        return self.known[tick]
 
     @classmethod
     def of(cls, tick: Tick, info: RunInfo, units: Sequence[Channel]) -> Self:
@@ -53,6 +66,36 @@ class RowLayout:
                 return channel.name
             at += channel.size
         return "its parts"
+
+
+@dataclass(frozen=True)
+class Copied:
+    """Where a log's row has its numbers from."""
+
+    time: int
+    """place of the time in s"""
+    to: npt.NDArray[np.intp]
+    source: npt.NDArray[np.intp]
+    """(k,) places in the log's row, and those in the block's row that they are copies of"""
+    constant: Array
+    """(width,) the log's row where it does not depend on the block's"""
+
+
+def _copied(row: Row, tick: Callable[[Array], Tick], size: int) -> Copied | None:
+    """Asks for the rows of ticks whose numbers are 0 or 1: bit by bit, the places of a block's row, counted from 1."""
+    digits = 1 << np.arange((size + 1).bit_length())
+    places = np.arange(1, size + 1)
+    bits, times = np.empty((len(digits), row.width)), 0
+    for i, digit in enumerate(digits.tolist()):
+        made = tick((places & digit != 0).astype(np.float64))
+        if row.fill(made, bits, i) >= 0:
+            return None
+        times += digit * int(made.measurement.time)
+    varies = np.ptp(bits, axis=0) > 0.0
+    found = digits @ bits[:, varies]
+    if not np.isin(bits[:, varies], (0.0, 1.0)).all() or found.max(initial=0.0) > size:
+        return None
+    return Copied(times - 1, np.flatnonzero(varies), found.astype(np.intp) - 1, bits[0])
 
 
 def _row(tick: Tick, found: Sequence[PlacedChannel]) -> Row:
@@ -112,6 +155,25 @@ class Block:
         self.times[count] = tick.measurement.time
         self.count = count + 1
         return True
+
+    def add_rows(self, numbers: Array, tick: Callable[[Array], Tick]) -> int:
+        """Copies ticks of a block (k, size) that have this layout and phase. Returns how many: as many as there is room
+        for, none where a number of a tick is no copy of the block's.
+
+        Args:
+            numbers: a row of each.
+            tick: a row → the tick, made of views of it.
+        """
+        count = min(len(numbers), len(self.times) - self.count)
+        copied = self.layout.copied(tick, numbers.shape[1]) if count else None
+        if copied is None:
+            return 0
+        rows = slice(self.count, self.count + count)
+        self.times[rows] = numbers[:count, copied.time]
+        self.rows[rows] = copied.constant
+        self.rows[rows, copied.to] = numbers[:count, copied.source]
+        self.count += count
+        return count
 
     def columns(self) -> dict[str, Array]:
         """Channel as logged → (count, …) values."""

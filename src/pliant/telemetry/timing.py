@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from pliant.spatial import Array
 from pliant.stopwatch import percentiles
@@ -25,13 +27,20 @@ class Timing:
 
     def add(self, wall: Mapping[str, float]) -> None:
         """Takes the times of one period: stage → s. Stages that the first period lacks are left out."""
+        self._take(wall, self._count % _KEPT, 1)
+
+    def add_block(self, wall: Mapping[str, Array]) -> None:
+        """The same of several periods, at most as many as are kept: stage → (k,) s."""
+        count = min(map(len, wall.values()), default=0)
+        self._take(wall, np.arange(self._count, self._count + count) % _KEPT, count)
+
+    def _take(self, wall: Mapping[str, Any], columns: int | npt.NDArray[np.intp], count: int) -> None:
         if not self._count:
             self._names = tuple(wall)
             self._times = np.full((len(wall), _KEPT), np.nan)
-        column = self._count % _KEPT
         for row, name in enumerate(self._names):
-            self._times[row, column] = wall.get(name, np.nan)
-        self._count += 1
+            self._times[row, columns] = wall.get(name, np.nan)
+        self._count += count
 
     def summary(self) -> dict[str, dict[str, float]]:
         """Stage → mean, median, 90th and 99th percentile, maximum in µs, over the latest 100 000 periods, and their

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from pliant._values import Views
+from pliant.compiled import KnownReferences
 from pliant.interfaces import ReferenceSource
 from pliant.references.postures.posture import PostureOptions, PosturePath, solve_posture
 from pliant.references.source import FrameMotion, Started
@@ -90,7 +91,7 @@ class PostureSource(ReferenceSource[Started]):
         self.start: Array = vector(path.postures[0], "the first posture")
         # Each task takes six columns, position and three zeros, so that a row of rates is a twist.
         tool = np.array([motion.position.at(float(t)).value for t in path.times])
-        blocks = [np.pad(block, ((0, 0), (0, 3))) for block in (tool, *secondary.values())]
+        blocks = [np.hstack([block, np.zeros_like(block)]) for block in (tool, *secondary.values())]
         self._spline = Spline(path.times, np.hstack([*blocks, path.postures]))
         R = motion.rotation
         self._turning = R if isinstance(R, Turning) and not isinstance(R, Fixed) else None
@@ -101,6 +102,8 @@ class PostureSource(ReferenceSource[Started]):
             _Task(frame, None, tunings.get(frame), _parts_of(i, width)) for i, frame in enumerate(secondary, start=1)
         ]
         self._posture = Views([(6 * len(blocks), len(self.start))]).of
+        self._more = 15 if self._turning is not None or motion.wrench is not None else 0
+        self._turned = Views([(3 * width, 3, 3), (3 * width + 9, 6)]).of
         self._no_wrench = vector(np.zeros(6), "no wrench")
 
     def init(self, estimate: Estimate) -> Started:
@@ -113,22 +116,71 @@ class PostureSource(ReferenceSource[Started]):
         """The reference at `time` of the loop's clock, `elapsed` s after the start."""
         inside = self.path.inside(elapsed)
         row = self._spline.row(inside)
-        tasks = [self._tool_task(elapsed, inside, row)]
+        return self._of(time, self._completed(row, elapsed, inside) if self._more else row)
+
+    def compiled_face(self, estimate: Estimate, state: Started) -> KnownPostures:
+        return KnownPostures(3 * self._spline.size + self._more, state.time, self._rows, self._of)
+
+    def _rows(self, elapsed: Array) -> Array:
+        """What `_of` needs (k, …) at times (k,) in s after the start."""
+        inside = np.array([self.path.inside(time) for time in elapsed.tolist()]) if self.path.repeats else elapsed
+        rows = self._spline.table(inside)
+        if not self._more:
+            return rows
+        times = zip(elapsed.tolist(), inside.tolist(), strict=True)
+        return np.array([self._completed(row, *at) for row, at in zip(rows, times, strict=True)])
+
+    def _completed(self, row: Array, elapsed: float, inside: float) -> Array:
+        """A row of the spline with the twist of a rotation, and behind it the rotation and the wrench."""
+        whole = np.concatenate([row, np.empty(self._more)])
+        _, velocity, change = self._tool.parts(whole)
+        rotation, wrench = self._turned(whole)
+        if self._turning is not None and inside <= self.path.times[-1]:
+            rotation[:], velocity[3:], change[3:] = self._turning.at(inside)
+        elif self._turning is not None:
+            rotation[:] = self._turning.at(float(self.path.times[-1])).rotation
+        if self.motion.wrench is not None:
+            wrench[:] = self.motion.wrench.at(elapsed).value
+        return whole
+
+    def _of(self, time: float, row: Array) -> Reference:
+        position, velocity, change = self._tool.parts(row)
+        rotation, wrench = self._turned(row) if self._more else (None, self._no_wrench)
+        rotation = self._tool.rotation if self._turning is None else rotation
+        wrench = self._no_wrench if self.motion.wrench is None else wrench
+        tasks = [TaskReference(self._tool.frame, position, rotation, velocity, change, wrench, self._tool.tuning)]
         for task in self._others:
             position, rate, change = task.parts(row)
             tasks.append(TaskReference(task.frame, position, None, rate, change, self._no_wrench, task.tuning))
         (posture,) = self._posture(row)
         return Reference(time, tuple(tasks), posture)
 
-    def _tool_task(self, elapsed: float, inside: float, row: Array) -> TaskReference:
-        tool, rotation = self._tool, self._tool.rotation
-        position, velocity, change = tool.parts(row)
-        if self._turning is not None and inside <= self.path.times[-1]:
-            rotation, velocity[3:], change[3:] = self._turning.at(inside)
-        elif self._turning is not None:
-            rotation = self._turning.at(float(self.path.times[-1])).rotation
-        wrench = self._no_wrench if self.motion.wrench is None else self.motion.wrench.at(elapsed).value
-        return TaskReference(tool.frame, position, rotation, velocity, change, wrench, tool.tuning)
+
+class KnownPostures(KnownReferences):
+    """References of a `PostureSource` that was started.
+
+    Args:
+        size: numbers of a reference.
+        start: s of the loop's clock.
+        rows: times (k,) in s after the start → references (k, size).
+        of: time in s and numbers (size,) → reference.
+    """
+
+    def __init__(
+        self,
+        size: int,
+        start: float,
+        rows: Callable[[Array], Array],
+        of: Callable[[float, Array], Reference],
+    ) -> None:
+        self.size, self._start, self._rows, self._of = size, start, rows, of
+
+    def reference(self, time: float, numbers: Array) -> Reference:
+        return self._of(time, numbers)
+
+    def fill(self, times: Array, rows: Array) -> int:
+        rows[:] = self._rows(times - self._start)
+        return len(times)
 
 
 def _parts_of(place: int, width: int) -> Parts:

@@ -52,6 +52,12 @@ class Spline(Trajectory):
         self._core.at(time, row)
         return row
 
+    def table(self, times: Array) -> Array:
+        """`row` (k, 3 size) at each of several times (k,) in s."""
+        rows = np.empty((len(times), 3 * self.size))
+        self._core.rows(times, rows)
+        return rows
+
     def rows(self, times: Array) -> Point:
         starts = self._starts
         index = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, self._last_piece)
