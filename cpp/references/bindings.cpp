@@ -2,7 +2,9 @@
 #include <nanobind/stl/vector.h>
 
 #include "../shared/numpy_arrays.hpp"
+#include "bind_exploration.hpp"
 #include "spline.hpp"
+#include "superposed.hpp"
 #include "task_rows.hpp"
 
 namespace {
@@ -71,4 +73,6 @@ NB_MODULE(_references, m) {
            "heights"_a, "turning"_a, "width"_a);
   m.def("parts_of", &parts, "row"_a, "offset"_a.none(), "height"_a);
   m.def("columns_of", &pliant::references::columns_of, "times"_a, "table"_a, "turning"_a);
+  m.def("superposed", &pliant::references::superposed, "base"_a, "pieces"_a, "time"_a, "width"_a);
+  pliant::references::bind_exploration(m);
 }

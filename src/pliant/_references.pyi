@@ -124,3 +124,89 @@ def columns_of(
     """The times as given, position (m, 3), rotation (m, 3, 3), twist (m, 6), wrench (m, 6), posture (m, n), task axes
     (m, 3, 3) of the rows of a table (m, 57 + n), views of it; None in place of a posture without numbers, and of axes
     unless they are `turning`. Raises ValueError for a table of another shape."""
+
+class FrameCore:
+    """Haptic exploration of the axes of one frame, or of the one direction along its contact normal."""
+
+    def __init__(self) -> None: ...
+    @property
+    def offsets(self) -> list[float]:
+        """Δx (6,), m and rad."""
+
+    @property
+    def clamped(self) -> list[float]:
+        """(6,) parts of the desired force that exceed F_max, N and N·m."""
+
+    def rule(
+        self,
+        linear: Sequence[float],
+        angular: Sequence[float],
+        asked: Sequence[bool],
+        printed: bool,
+        normal: bool,
+        resolution: float,
+        turn: Sequence[float],
+    ) -> None:
+        """Other parameters.
+
+        Args:
+            linear, angular: (16,) each, `AxisRules.numbers`.
+            asked: (6,) whether F_d = 0 is a request, of each axis.
+            printed: whether the printed algorithm moves the target.
+            normal: whether it moves along the estimated contact normal only.
+            resolution: σ of the printed algorithm.
+            turn: least force, N, time constant, s, rate, rad/s, and cone, rad, of the estimated normal.
+
+        Raises:
+            ValueError: another number of rules.
+        """
+
+    def limit(self, limits: Sequence[Sequence[float]]) -> None:
+        """Other bounds of 3 or 6 axes, to which the offsets keep from now on. Args: limits: stiffness, N/m, largest
+        force, N, and bound of the offset, m, of each. Raises ValueError for another number of axes."""
+
+    def begin(self, offsets: Sequence[float]) -> None:
+        """Other axes, in which the offsets (6,) are these, m and rad: they begin anew."""
+
+    def step(
+        self, desired: Array, measured: Array | None, place: Array, velocity: Array, time: float, period: float
+    ) -> tuple[Array, Array, bool, bool]:
+        """Moves the offsets of k axes.
+
+        Args:
+            desired: F_d (6,), N and N·m.
+            measured: F (6,); None: it is zero. Not finite: there is no usable signal, and offsets are held.
+            place: x_d (3,) without the offset, m.
+            velocity: of x_d (3,) or longer, m/s.
+            time: s.
+            period: s since the last tick.
+
+        Returns:
+            Channels (6 k,): Δx, phase, stiffness, reachable, unreachable and clamped force, each (k,); x_d + Δx (3,) m;
+            whether Δx turns the frame; whether a force was clamped.
+
+        Raises:
+            ValueError: too few numbers, or no bounds yet.
+        """
+
+def pressed(wrench: Array, place: Array) -> int:
+    """1 where a wrench (6,), N and N·m, is not zero, else 0; −1: it or the place (3,) m is not finite. Raises
+    ValueError for too few numbers."""
+
+def superposed(
+    base: tuple[float, ...],
+    pieces: tuple[tuple[float, float, tuple[float, ...], tuple[float, ...]], ...],
+    time: float,
+    width: int,
+) -> Array:
+    """Position, velocity and acceleration (3, width) of half cosines on top of a base; beyond the k axes it is zero.
+
+    Args:
+        base: (k,) m or rad.
+        pieces: start, s, duration, s, way (k,) and target of each.
+        time: s.
+        width: k or more.
+
+    Raises:
+        ValueError: ways of another size than the base, or a width that does not hold it.
+    """

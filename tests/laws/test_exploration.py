@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.references.exploration.axis import AxisPhase
 from pliant.references.exploration.config import ExplorationConfig
+from pliant.references.exploration.rules import AxisPhase
 from tests.laws.one_axis import Log, World, run, tuning
 
 PAPER = ExplorationConfig(mode="paper", reset=False)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from pliant.references.exploration.config import ExplorationConfig
-from pliant.references.exploration.contact_normal import angle_between, turned_normal, within_cone
 from pliant.references.exploration.haptic_exploration import HapticExploration
 from pliant.references.schedule import LatestReference
 from tests.references.explored import PERIOD, estimate, play, reference, task
+from tests.twins.exploration.contact_normal import angle_between, turned_normal, within_cone
 
 
 def slide(direction: str, friction: float, tilt: float) -> np.ndarray:

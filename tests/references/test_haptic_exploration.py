@@ -10,13 +10,13 @@ import pytest
 from pydantic import ValidationError
 
 from pliant.errors import ConfigError, PliantError, SignalError
-from pliant.references.exploration.axis import AxisPhase
 from pliant.references.exploration.config import ExplorationConfig
 from pliant.references.exploration.haptic_exploration import CHANNELS, HapticExploration
-from pliant.references.exploration.sliding_span import SlidingSpan
+from pliant.references.exploration.rules import AxisPhase
 from pliant.references.schedule import LatestReference
 from pliant.spatial import exp3, log3
 from tests.references.explored import PERIOD, estimate, play, reference, task, tuned
+from tests.twins.exploration.sliding_span import SlidingSpan
 
 
 def test_offset_moves_against_the_missing_force_and_is_reported() -> None:

@@ -11,12 +11,12 @@ import pytest
 
 import pliant
 from pliant.entries import Believed
-from pliant.references.exploration.axis import ExploredAxis
 from pliant.references.exploration.rules import AxisLimits, AxisRules
 from pliant.robot import Robot, Tool
 from pliant.signals import ImpedanceTuning
 from pliant.wiring.recipes import HapticConfig
 from pliant.wiring.registry import find_controller
+from tests.twins.exploration.axis import ExploredAxis
 
 CONTACT, IMPEDANCE, INERTIA, DAMPING = 2e4, 2500.0, 3.0, 270.0  # N/m, N/m, kg, N·s/m: a mode of 13 Hz
 BELIEVED = Believed(("tool",), 1e-3, presses="tool", stiffness=CONTACT)

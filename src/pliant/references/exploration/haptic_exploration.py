@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
+from functools import cache
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from pliant._references import pressed as pressed_by
+from pliant._values import NamedViews
 from pliant.axis_modes import AxisModes
 from pliant.errors import ConfigError, SignalError, options
 from pliant.frozen import changed
@@ -48,30 +50,24 @@ class ExplorationState:
 
 
 class _Frame:
-    """An explored frame, the names of its channels, when it was last there, and how far it went along its axes."""
+    """An explored frame, its channels, when it was last there, and how far it went along its axes."""
 
-    __slots__ = ("explored", "names", "place", "said", "task", "time", "way")
+    __slots__ = ("channels", "explored", "place", "pressed", "task", "time", "way")
 
-    def __init__(self, frame: str, time: float, place: Array) -> None:
+    def __init__(self, time: float, place: Array) -> None:
         self.explored, self.time, self.place, self.way = ExploredFrame(), time, place, np.zeros(3)
-        self.names = tuple(f"exploration/{frame}/{name}" for name in CHANNELS)
+        self.channels = NamedViews((), ())
         self.task: TaskReference | None = None
         """the last one"""
-        self.said: _Said | None = None
-        """of that task; a target at rest is the same from tick to tick"""
+        self.pressed = False
+        """whether its wrench is not zero; a target at rest is the same from tick to tick"""
 
 
-class _Said(NamedTuple):
-    """What a task asks for, as plain numbers."""
-
-    wrench: list[float]
-    """(6,) N and N·m"""
-    place: list[float]
-    """(3,) m"""
-    velocity: list[float]
-    """(6,) m/s and rad/s"""
-    pressed: bool
-    """whether the wrench is not zero"""
+@cache
+def _channels(frame: str, count: int) -> NamedViews:
+    """Channels of a frame of 3 or 6 axes, of the numbers that its core reports."""
+    names = [f"exploration/{frame}/{name}" for name in CHANNELS]
+    return NamedViews(names, [(count * place, count) for place in range(len(names))])
 
 
 class HapticExploration(ReferenceSource[ExplorationState]):
@@ -116,8 +112,9 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         if period < 0.0:
             raise SignalError(f"time runs backwards: {estimate.time:g} s after {state.time:g} s")
         state.time = estimate.time
-        if isinstance(plain.tuning, ExplorationConfig) and plain.tuning is not state.rules.config:
-            state.rules = FrameRules(plain.tuning)
+        tuning = plain.tuning
+        if tuning is not state.rules.config and isinstance(tuning, ExplorationConfig):
+            state.rules = FrameRules(tuning)
         diagnostics: dict[str, float | Array] = dict(plain.diagnostics)
         period = min(period, _LONGEST_PERIOD)
         tasks = tuple([self._felt(task, estimate, state, period, diagnostics) for task in plain.tasks])
@@ -132,102 +129,80 @@ class HapticExploration(ReferenceSource[ExplorationState]):
         diagnostics: dict[str, float | Array],
     ) -> TaskReference:
         """The task with its target shifted."""
-        tuning = task.tuning or self.tunings.get(task.frame)
-        modes = task.modes if state.rules.config.direction == "axes" else None
+        rules, tuning = state.rules, task.tuning or self.tunings.get(task.frame)
+        modes = task.modes if rules.axes else None
         frame = state.frames.get(task.frame)
-        said = frame.said if frame is not None and frame.task is task else None
-        said = said or _numbers(task)
-        desired, place, velocity, pressed = said
+        pressed = frame.pressed if frame is not None and frame.task is task else _pressed(task)
         asked = pressed or (modes is not None and "force" in modes.modes)
         if frame is None or estimate.time - frame.time > _FORGOTTEN:
             if not asked:
                 return task  # no desired force, and no offset so far
-            frame = state.frames[task.frame] = _Frame(task.frame, estimate.time, task.position)
-        frame.time, frame.task, frame.said = estimate.time, task, said
+            frame = state.frames[task.frame] = _Frame(estimate.time, task.position)
+        frame.time, frame.task, frame.pressed = estimate.time, task, pressed
         if tuning is None:
             raise ConfigError(
                 f"frame {task.frame!r} needs its impedance (stiffness, force_max, range) to be explored: give the task"
                 f" a tuning, or HapticExploration one for the frame; {options(self.tunings, task.frame)}"
             )
-        measured = _usable(estimate, task, asked)
-        explored = frame.explored
-        told, rotation = (desired, measured, place, velocity), None
-        if state.rules.config.direction == "axes":
-            rotation = task.task_rotation if modes is None else modes.rotation if modes.turned else None
-        if rotation is not None:
-            told = _in_axes(rotation, modes, task, measured, frame)
-        explored.step(state.rules, tuning, *told, estimate.time, period, modes, rotation)
-        _report(frame, diagnostics)
-        return _shifted(task, explored, tuning, desired, place)
-
-
-def _numbers(task: TaskReference) -> _Said:
-    desired: list[float] = task.wrench.tolist()
-    place: list[float] = task.position.tolist()
-    if not math.isfinite(sum(desired) + sum(place)):
-        raise SignalError(f"the reference of frame {task.frame!r} is not finite: {place} m, {desired} N and N·m")
-    return _Said(desired, place, task.velocity.tolist(), any(desired))
-
-
-def _in_axes(
-    R: Array, modes: AxisModes | None, task: TaskReference, measured: list[float] | None, frame: _Frame
-) -> tuple[list[float], list[float] | None, list[float], list[float]]:
-    """Desired and measured wrench, place and velocity in axes R_world_axes (3, 3).
-
-    Where the axes may turn, which they do without modes, the place is the way along them: a turn alone is no motion.
-    """
-    desired, velocity = in_world(R.T, task.wrench.tolist()), in_world(R.T, task.velocity.tolist())
-    felt = None if measured is None else in_world(R.T, measured)
-    if modes is not None:
-        asked = zip(desired, modes.having("force"), strict=True)
-        return [part if force else 0.0 for part, force in asked], felt, (R.T @ task.position).tolist(), velocity
-    frame.way, frame.place = frame.way + R.T @ (task.position - frame.place), task.position
-    small = _ROUNDING * max(map(abs, desired))
-    return [part if abs(part) > small else 0.0 for part in desired], felt, frame.way.tolist(), velocity
-
-
-def _usable(estimate: Estimate, task: TaskReference, needed: bool) -> list[float] | None:
-    """The measured wrench (6,); None if it is not finite, or missing and not needed."""
-    wrench = estimate.wrenches.get(task.frame)
-    if wrench is None:
-        if needed:
+        felt = estimate.wrenches.get(task.frame)
+        if felt is None and asked:
             raise SignalError(
                 f"frame {task.frame!r} has the desired wrench {task.wrench.tolist()} but no force signal;"
                 f" {options(estimate.wrenches, task.frame)}"
             )
-        return [0.0] * 6
-    values: list[float] = wrench.tolist()
-    return values if math.isfinite(sum(values)) else None
+        told, rotation = (task.wrench, felt, task.position, task.velocity), None
+        if rules.axes:
+            rotation = task.task_rotation if modes is None else modes.rotation if modes.turned else None
+        if rotation is not None:
+            told = _in_axes(rotation, modes, task, felt, frame)
+        explored = frame.explored
+        if (
+            rules is not explored.rules
+            or tuning is not explored.tuning
+            or modes is not explored.modes
+            or rotation is not explored.rotation
+        ):
+            explored.prepare(rules, tuning, modes, rotation)
+            frame.channels = _channels(task.frame, explored.count)
+        numbers, place, turns, clamped = explored.core.step(*told, estimate.time, period)
+        diagnostics.update(frame.channels.of(numbers))
+        if rotation is None and not turns and not clamped:
+            return changed(task, position=place, tuning=tuning)
+        return _shifted(task, explored, tuning, clamped)
 
 
-def _report(frame: _Frame, diagnostics: dict[str, float | Array]) -> None:
-    explored = frame.explored
-    count = len(explored.limits)
-    axes = explored.axes[:count]
-    names = frame.names
-    values = [
-        *explored.offsets[:count],
-        *[axis.phase for axis in axes],
-        *[axis.stiffness for axis in axes],
-        *[axis.reachable for axis in axes],
-        *[axis.unreachable for axis in axes],
-        *[axis.clamped for axis in axes],
-    ]
-    table = np.array(values, dtype=np.float64)
-    for at, name in enumerate(names):
-        diagnostics[name] = table[at * count : at * count + count]
+def _pressed(task: TaskReference) -> bool:
+    found = pressed_by(task.wrench, task.position)
+    if found < 0:
+        place, desired = task.position.tolist(), task.wrench.tolist()
+        raise SignalError(f"the reference of frame {task.frame!r} is not finite: {place} m, {desired} N and N·m")
+    return found > 0
 
 
-def _shifted(
-    task: TaskReference, explored: ExploredFrame, tuning: ImpedanceTuning, desired: list[float], place: list[float]
-) -> TaskReference:
-    offsets = in_world(explored.rotation, explored.offsets)
+def _in_axes(
+    R: Array, modes: AxisModes | None, task: TaskReference, measured: Array | None, frame: _Frame
+) -> tuple[Array, Array | None, Array, Array]:
+    """Desired and measured wrench, place and velocity in axes R_world_axes (3, 3).
+
+    Where the axes may turn, which they do without modes, the place is the way along them: a turn alone is no motion.
+    """
+    desired, velocity = in_world(R.T, task.wrench.tolist()), np.array(in_world(R.T, task.velocity.tolist()))
+    felt = None if measured is None else np.array(in_world(R.T, measured.tolist()))
+    if modes is not None:
+        asked = zip(desired, modes.having("force"), strict=True)
+        return np.array([part if force else 0.0 for part, force in asked]), felt, R.T @ task.position, velocity
+    frame.way, frame.place = frame.way + R.T @ (task.position - frame.place), task.position
+    small = _ROUNDING * max(map(abs, desired))
+    return np.array([part if abs(part) > small else 0.0 for part in desired]), felt, frame.way, velocity
+
+
+def _shifted(task: TaskReference, explored: ExploredFrame, tuning: ImpedanceTuning, clamped: bool) -> TaskReference:
+    offsets, place = explored.offsets, task.position.tolist()
     position = np.array((place[0] + offsets[0], place[1] + offsets[1], place[2] + offsets[2]))
     rotation = task.rotation
     if rotation is not None and (offsets[3] or offsets[4] or offsets[5]):
         rotation = exp3(offsets[3:]) @ rotation
     wrench = task.wrench
-    clamped = in_world(explored.rotation, [axis.clamped for axis in explored.axes])
-    if any(clamped):
-        wrench = np.array([f - c for f, c in zip(desired, clamped, strict=True)])
+    if clamped:
+        wrench = np.array([f - c for f, c in zip(wrench.tolist(), explored.clamped, strict=True)])
     return changed(task, position=position, rotation=rotation, wrench=wrench, tuning=tuning)

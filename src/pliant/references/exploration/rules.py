@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from enum import IntEnum
 from typing import NamedTuple
 
 from pliant.references.exploration.config import ExplorationConfig
+
+
+class AxisPhase(IntEnum):
+    """State of an axis."""
+
+    OFF = 0
+    """no force desired: the offset returns to zero"""
+    FREE = 1
+    """a force desired, no contact"""
+    CONTACT = 2
+    """regulating the force"""
+    LOST = 3
+    """contact lost while regulating: the offset is held"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +70,11 @@ class AxisRules:
             turn_speed=kind("turn_speed"),
             turn_time=config.turn_time,
         )
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """All of them in order."""
+        return tuple(map(float, astuple(self)))
 
 
 class AxisLimits(NamedTuple):

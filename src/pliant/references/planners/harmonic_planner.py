@@ -42,9 +42,10 @@ class PlannerLimits:
 class PlannedFrame:
     """Plans of one frame. Changed in place by the planner that owns it."""
 
-    __slots__ = ("base", "clamped", "linear", "placed", "position", "resting", "rotation", "taken", "turn")
+    __slots__ = ("base", "channel", "clamped", "linear", "placed", "position", "resting", "rotation", "taken", "turn")
 
-    def __init__(self, position: Array, rotation: Array) -> None:
+    def __init__(self, name: str, position: Array, rotation: Array) -> None:
+        self.channel = f"planner/{name}/clamped"
         self.linear = Superposition(_floats(position))
         self.turn = Superposition((0.0, 0.0, 0.0))
         """rotation vector of R·baseᵀ, rad"""
@@ -116,12 +117,12 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         tasks = tuple([self._planned(task, estimate, state) for task in goal.tasks])
         diagnostics = goal.diagnostics
         if self.workspaces:
-            clamped = {f"planner/{name}/clamped": frame.clamped for name, frame in state.frames.items()}
-            diagnostics = {**diagnostics, **clamped}
-        preview = goal.preview
+            diagnostics = {**diagnostics, **{frame.channel: frame.clamped for frame in state.frames.values()}}
+        planned = changed(goal, tasks=tasks, diagnostics=diagnostics)
         if self.lookahead is not None:
             preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
-        return changed(goal, tasks=tasks, diagnostics=diagnostics, preview=preview), state
+            planned = changed(planned, preview=preview)
+        return planned, state
 
     def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
         """The references of the first task at later times, s, increasing, with the targets that are known now.
@@ -149,8 +150,9 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
     def _planned(self, task: TaskReference, estimate: Estimate, state: PlannerState) -> TaskReference:
         frame = state.frames.get(task.frame)
         if frame is None:
-            frame = state.frames[task.frame] = PlannedFrame(*self._place(np.array(estimate.q), task.frame))
-        self._take(task, frame, estimate.time)
+            frame = state.frames[task.frame] = PlannedFrame(task.frame, *self._place(np.array(estimate.q), task.frame))
+        if task.position is not frame.position or task.rotation is not frame.rotation:
+            self._take(task, frame, estimate.time)
         return _placed(task, frame, estimate.time)
 
     @staticmethod
@@ -197,10 +199,9 @@ def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, 
     if frame.resting is not None:
         return frame.resting, _REST, _REST
     frame.linear, frame.turn = frame.linear.folded(time), frame.turn.folded(time)
-    position, rate, push = frame.linear.at(time)
-    rotation = _rotation(frame, time)
-    velocity, acceleration = np.array((*rate, 0.0, 0.0, 0.0)), np.array((*push, 0.0, 0.0, 0.0))
-    pose = (np.array(position), rotation)
+    rows = frame.linear.rows(time)
+    velocity, acceleration = rows[1], rows[2]
+    pose = (rows[0, :3], _rotation(frame, time))
     if frame.turn.pieces:
         before, now, after = (_angular_velocity(frame.turn, time + s) for s in (-_ANGULAR_STEP, 0.0, _ANGULAR_STEP))
         velocity[3:], acceleration[3:] = now, (after - before) / (2.0 * _ANGULAR_STEP)
@@ -210,7 +211,7 @@ def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, 
 
 
 def _rotation(frame: PlannedFrame, time: float) -> Array:
-    turn = frame.turn.at(time).position
+    turn = frame.turn.at(time).position if frame.turn.pieces else frame.turn.base
     return exp3(turn) @ frame.base if any(turn) else frame.base
 
 

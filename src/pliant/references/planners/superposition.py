@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from pliant._references import superposed
 from pliant.axis_modes import AxisModes
 from pliant.errors import ConfigError
 from pliant.spatial import Array
@@ -103,21 +104,11 @@ class Superposition:
 
     def at(self, time: float) -> PlannedMotion:
         """Position, velocity and acceleration at a time in s."""
-        position, velocity = list(self.base), [0.0] * len(self.base)
-        acceleration = [0.0] * len(self.base)
-        for start, duration, way, _ in self.pieces:
-            if time <= start:
-                continue
-            angle = math.pi * min((time - start) / duration, 1.0)
-            rate = math.pi / duration if angle < math.pi else 0.0
-            cosine = math.cos(angle)
-            share = 0.5 * (1.0 - cosine)
-            speed, push = 0.5 * rate * math.sin(angle), 0.5 * rate * rate * cosine
-            for axis, length in enumerate(way):
-                position[axis] += share * length
-                velocity[axis] += speed * length
-                acceleration[axis] += push * length
-        return PlannedMotion(tuple(position), tuple(velocity), tuple(acceleration))
+        return PlannedMotion(*map(tuple, superposed(self.base, self.pieces, time, len(self.base)).tolist()))
+
+    def rows(self, time: float) -> Array:
+        """The same as rows (3, 6), of at most six axes; what is beyond them is zero."""
+        return superposed(self.base, self.pieces, time, 6)
 
     def retargeted(
         self, time: float, target: tuple[float, ...], limits: MotionLimits, least: float = 0.0

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from enum import IntEnum
 
-from pliant.references.exploration.release import Retreat
-from pliant.references.exploration.rules import AxisLimits, AxisRules
-from pliant.references.exploration.sliding_span import SlidingSpan
+from pliant.references.exploration.rules import AxisLimits, AxisPhase, AxisRules
+from tests.twins.exploration.release import Retreat
+from tests.twins.exploration.sliding_span import SlidingSpan
 
 _CAUTION = 3.0
 """a contact at rest shows at most K_0; a larger apparent stiffness is oscillation, which reduces the gain by up to this
@@ -20,19 +19,6 @@ _RELIEF = 0.25
 
 _HASTE = 2.0
 """share of k_I in a retreat, which regulates the impedance's own spring and must wait for the timeout of its phases"""
-
-
-class AxisPhase(IntEnum):
-    """State of an axis."""
-
-    OFF = 0
-    """no force desired: the offset returns to zero"""
-    FREE = 1
-    """a force desired, no contact"""
-    CONTACT = 2
-    """regulating the force"""
-    LOST = 3
-    """contact lost while regulating: the offset is held"""
 
 
 class ExploredAxis:
