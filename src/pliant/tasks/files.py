@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +43,12 @@ def load_task(path: str | Path, variant: str | None = None) -> Task:
     Raises:
         ConfigError: no such file or variant, or it holds something that is no task; file and key are named.
     """
-    found = read_task(path)
+    file = located(path)
+    return (_shipped if file.parent == CATALOGUE else _loaded)(file, variant)
+
+
+def _loaded(file: Path, variant: str | None) -> Task:
+    found = read_task(file)
     if variant is None:
         return found.task
     if variant not in found.variants:
@@ -50,9 +56,17 @@ def load_task(path: str | Path, variant: str | None = None) -> Task:
     return changed(found.path, found.task, found.variants[variant])
 
 
+_shipped = cache(_loaded)
+"""of files of the catalogue, which stay as they are: a study makes its cases of few of them"""
+
+
 def read_task(path: str | Path) -> TaskFile:
     """A task file with its variants. Raises as `load_task`."""
     file = located(path)
+    return (_shipped_file if file.parent == CATALOGUE else _read)(file)
+
+
+def _read(file: Path) -> TaskFile:
     values = _with_base(file, 0)
     variants = values.pop("variant", {})
     if not isinstance(variants, dict) or not all(isinstance(changes, dict) for changes in variants.values()):
@@ -63,6 +77,9 @@ def read_task(path: str | Path) -> TaskFile:
                 f"{file}: variant: its name becomes that of a folder: no '/', backslash or '..', got {name!r}"
             )
     return TaskFile(file, checked(file, values), variants)
+
+
+_shipped_file = cache(_read)
 
 
 def located(path: str | Path) -> Path:
