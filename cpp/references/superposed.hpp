@@ -22,12 +22,12 @@ inline Py_ssize_t size_of(PyObject* value, const char* what) {
   return PyTuple_GET_SIZE(value);
 }
 
-// Position, velocity and acceleration (3, width) of k ≤ width axes at a time in s; what is beyond them is zero. Args:
-// base (k); pieces, each (start, s; duration, s; way (k); …).
+// Position (k), velocity (width) and acceleration (width) of k ≤ width axes at a time in s; what is beyond them is
+// zero. Args: base (k); pieces, each (start, s; duration, s; way (k); …).
 inline nb::object superposed(nb::handle base, nb::handle pieces, double time, size_t width) {
   const Py_ssize_t axes = size_of(base.ptr(), "a base"), count = size_of(pieces.ptr(), "the pieces");
   if (axes > Py_ssize_t(width)) throw std::invalid_argument("a row must hold every axis");
-  const nb::object made = new_array({3, npy_intp(width)});
+  const nb::object made = new_array({3 * npy_intp(width)});
   double *position = data_of(made), *velocity = position + width, *acceleration = velocity + width;
   std::fill_n(position, 3 * width, 0.0);
   for (Py_ssize_t axis = 0; axis < axes; ++axis) position[axis] = number_of(base.ptr(), axis);
@@ -49,7 +49,10 @@ inline nb::object superposed(nb::handle base, nb::handle pieces, double time, si
       acceleration[axis] += push * length;
     }
   }
-  return made;
+  auto* array = reinterpret_cast<PyArrayObject*>(made.ptr());
+  const npy_intp few[] = {axes}, all[] = {npy_intp(width)};
+  return nb::make_tuple(view_of(array, 1, few, nullptr, 0), view_of(array, 1, all, nullptr, all[0]),
+                        view_of(array, 1, all, nullptr, 2 * all[0]));
 }
 
 }  // namespace pliant::references

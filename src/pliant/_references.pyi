@@ -198,8 +198,9 @@ def superposed(
     pieces: tuple[tuple[float, float, tuple[float, ...], tuple[float, ...]], ...],
     time: float,
     width: int,
-) -> Array:
-    """Position, velocity and acceleration (3, width) of half cosines on top of a base; beyond the k axes it is zero.
+) -> tuple[Array, Array, Array]:
+    """Position (k,), velocity and acceleration (width,) of half cosines on top of a base; beyond the k axes these are
+    zero.
 
     Args:
         base: (k,) m or rad.

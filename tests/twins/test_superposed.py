@@ -40,9 +40,9 @@ def test_it_is_its_twin() -> None:
         plan = plan.folded(time)
         twin = in_python(plan, time)
         assert tuple(map(list, plan.at(time))) == twin
-        rows = plan.rows(time)
-        assert rows[:, :3].tolist() == list(twin)
-        assert not rows[:, 3:].any()
+        position, *rates = superposed(plan.base, plan.pieces, time, 6)
+        assert [position.tolist(), *[rate[:3].tolist() for rate in rates]] == list(twin)
+        assert not np.array(rates)[:, 3:].any()
     assert len(plan.pieces) > 1
     assert in_python(plan, time + 1e-6) != twin, "another time"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -35,6 +36,8 @@ class Schedule(ReferenceSource[ScheduleState]):
     def __init__(self, entries: Sequence[tuple[float, Reference]]) -> None:
         self._times = [float(time) for time, _ in entries]
         self._references = [reference for _, reference in entries]
+        self._ends = [-math.inf, *self._times[1:], math.inf]
+        """s at which each entry begins to hold, and then the last one's end"""
         if not entries or any(b <= a for a, b in zip(self._times[:-1], self._times[1:], strict=True)):
             raise ConfigError(f"a schedule needs entries at increasing times, got {self._times}")
 
@@ -43,10 +46,10 @@ class Schedule(ReferenceSource[ScheduleState]):
 
     def step(self, estimate: Estimate, state: ScheduleState) -> tuple[Reference, ScheduleState]:
         # 1 ns: a time that is a sum of periods may fall short of the entry's by rounding
-        index = max(bisect.bisect_right(self._times, estimate.time - state.start + 1e-9) - 1, 0)
-        if index != state.index:
-            state = ScheduleState(state.start, index)
-        return at_time(self._references[index], estimate.time), state
+        elapsed = estimate.time - state.start + 1e-9
+        if not self._ends[state.index] <= elapsed < self._ends[state.index + 1]:
+            state = ScheduleState(state.start, max(bisect.bisect_right(self._times, elapsed) - 1, 0))
+        return changed(self._references[state.index], time=estimate.time), state
 
     def coming(self, state: ScheduleState, until: float) -> list[Reference]:
         """The changes of the reference up to a time in s. Each reference has the time from which it holds."""

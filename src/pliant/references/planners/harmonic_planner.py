@@ -8,17 +8,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from pliant._references import superposed
 from pliant.errors import ConfigError, SignalError
 from pliant.frozen import changed
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Coming, instants, preview_of
+from pliant.references.planners.rotation_vectors import left_jacobian, nearest
 from pliant.references.planners.superposition import MotionLimits, Superposition
 from pliant.references.planners.workspace import Workspace
 from pliant.references.trajectories.trajectory import vector
 from pliant.signals import Estimate, Reference, TaskReference
-from pliant.spatial import Array, exp3, log3, skew
+from pliant.spatial import Array, exp3, log3
 
 _STEADY = 0.02  # s: a target that moves continuously is updated at 50 Hz
 _ROUNDING = 1e-9  # s; times are sums of periods
@@ -42,7 +43,9 @@ class PlannerLimits:
 class PlannedFrame:
     """Plans of one frame. Changed in place by the planner that owns it."""
 
-    __slots__ = ("base", "channel", "clamped", "linear", "placed", "position", "resting", "rotation", "taken", "turn")
+    __slots__ = (
+        "base", "channel", "clamped", "linear", "placed", "position", "resting", "rotation", "still", "taken", "turn"
+    )  # fmt: skip
 
     def __init__(self, name: str, position: Array, rotation: Array) -> None:
         self.channel = f"planner/{name}/clamped"
@@ -61,6 +64,8 @@ class PlannedFrame:
         """pose while at rest"""
         self.placed: tuple[TaskReference, TaskReference] | None = None
         """the last target, and what became of it"""
+        self.still: tuple[TaskReference, TaskReference] | None = None
+        """the same, while at rest on that target"""
 
 
 class PlannerState:
@@ -114,15 +119,20 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
     def step(self, estimate: Estimate, state: PlannerState) -> tuple[Reference, PlannerState]:
         """The inner reference with planned poses and twists. Raises SignalError for a target that is not finite."""
         goal, state.inner = self.inner.step(estimate, state.inner)
-        tasks = tuple([self._planned(task, estimate, state) for task in goal.tasks])
+        tasks: list[TaskReference] = []
+        for task in goal.tasks:
+            frame = state.frames.get(task.frame)
+            still = None if frame is None else frame.still
+            planned = self._planned(task, estimate, state) if still is None or still[0] is not task else still[1]
+            tasks.append(planned)
         diagnostics = goal.diagnostics
         if self.workspaces:
             diagnostics = {**diagnostics, **{frame.channel: frame.clamped for frame in state.frames.values()}}
-        planned = changed(goal, tasks=tasks, diagnostics=diagnostics)
+        found = changed(goal, tasks=tuple(tasks), diagnostics=diagnostics)
         if self.lookahead is not None:
             preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
-            planned = changed(planned, preview=preview)
-        return planned, state
+            found = changed(found, preview=preview)
+        return found, state
 
     def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
         """The references of the first task at later times, s, increasing, with the targets that are known now.
@@ -153,7 +163,10 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
             frame = state.frames[task.frame] = PlannedFrame(task.frame, *self._place(np.array(estimate.q), task.frame))
         if task.position is not frame.position or task.rotation is not frame.rotation:
             self._take(task, frame, estimate.time)
-        return _placed(task, frame, estimate.time)
+        placed = _placed(task, frame, estimate.time)
+        rests = frame.resting is not None and task.position is frame.position and task.rotation is frame.rotation
+        frame.still = (task, placed) if rests else None
+        return placed
 
     @staticmethod
     def _is_new(task: TaskReference, frame: PlannedFrame) -> bool:
@@ -172,7 +185,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         if task.rotation is not None:
             if not frame.turn.folded(time).pieces:
                 frame.base, frame.turn = _rotation(frame, time), Superposition((0.0, 0.0, 0.0))
-            turn = _nearest(log3(task.rotation @ frame.base.T), frame.turn.target)
+            turn = nearest(log3(task.rotation @ frame.base.T), frame.turn.target)
             frame.rotation = task.rotation
         way = float(np.linalg.norm(np.subtract(target, frame.linear.target)))
         angle = float(np.linalg.norm(np.subtract(turn, frame.turn.target)))
@@ -180,7 +193,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         least = max(linear.duration(way), self.limits.angular.duration(angle))
         frame.linear = frame.linear.retargeted(time, target, linear, least)
         frame.turn = frame.turn.retargeted(time, turn, self.limits.angular, least)
-        frame.position, frame.taken, frame.resting = task.position, time, None
+        frame.position, frame.taken, frame.resting, frame.still = task.position, time, None, None
 
 
 def _placed(task: TaskReference, frame: PlannedFrame, time: float) -> TaskReference:
@@ -199,9 +212,8 @@ def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, 
     if frame.resting is not None:
         return frame.resting, _REST, _REST
     frame.linear, frame.turn = frame.linear.folded(time), frame.turn.folded(time)
-    rows = frame.linear.rows(time)
-    velocity, acceleration = rows[1], rows[2]
-    pose = (rows[0, :3], _rotation(frame, time))
+    position, velocity, acceleration = superposed(frame.linear.base, frame.linear.pieces, time, 6)
+    pose = (position, _rotation(frame, time))
     if frame.turn.pieces:
         before, now, after = (_angular_velocity(frame.turn, time + s) for s in (-_ANGULAR_STEP, 0.0, _ANGULAR_STEP))
         velocity[3:], acceleration[3:] = now, (after - before) / (2.0 * _ANGULAR_STEP)
@@ -218,26 +230,7 @@ def _rotation(frame: PlannedFrame, time: float) -> Array:
 def _angular_velocity(plan: Superposition, time: float) -> Array:
     """World axes (3,), rad/s: ω = J_l(r) ṙ of the rotation vector r."""
     r, rate, _ = plan.at(time)
-    return _left_jacobian(r) @ np.array(rate)
-
-
-def _left_jacobian(r: npt.ArrayLike) -> Array:
-    """J_l(r) (3, 3), with ω = J_l(r) ṙ. Source: Chirikjian, Stochastic Models, vol. 2, eq. 10.86."""
-    angle = float(np.linalg.norm(r))
-    cross = skew(r)
-    if angle < 1e-4:
-        return np.eye(3) + 0.5 * cross + cross @ cross / 6.0
-    first, second = (1.0 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3
-    return np.eye(3) + first * cross + second * cross @ cross
-
-
-def _nearest(turn: Array, last: tuple[float, ...]) -> tuple[float, ...]:
-    """Of the rotation vectors of one rotation, r and r − 2π r/|r|, the one nearer to the last target."""
-    angle = float(np.linalg.norm(turn))
-    if angle < 1e-9:
-        return _floats(turn)
-    other = turn * (1.0 - 2.0 * np.pi / angle)
-    return _floats(turn if np.linalg.norm(turn - last) <= np.linalg.norm(other - last) else other)
+    return left_jacobian(r) @ np.array(rate)
 
 
 def _same(a: Array, b: Array | None) -> bool:

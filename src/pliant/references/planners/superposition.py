@@ -104,11 +104,8 @@ class Superposition:
 
     def at(self, time: float) -> PlannedMotion:
         """Position, velocity and acceleration at a time in s."""
-        return PlannedMotion(*map(tuple, superposed(self.base, self.pieces, time, len(self.base)).tolist()))
-
-    def rows(self, time: float) -> Array:
-        """The same as rows (3, 6), of at most six axes; what is beyond them is zero."""
-        return superposed(self.base, self.pieces, time, 6)
+        found = superposed(self.base, self.pieces, time, len(self.base))
+        return PlannedMotion(*[tuple(part.tolist()) for part in found])
 
     def retargeted(
         self, time: float, target: tuple[float, ...], limits: MotionLimits, least: float = 0.0
