@@ -86,7 +86,7 @@ def _loop(console: Console) -> dict[str, Any]:
     result = run()
     table = Table("", *result, title="whole loops: CPU µs a tick, then s", title_justify="left")
     for row in next(iter(result.values())):
-        digits = 2 if row in ("loop", "run") or row.startswith("rollout") else 1
+        digits = 2 if row in ("loop", "run") or row.startswith(("rollout", "gain")) else 1
         table.add_row(_LOOP_ROWS.get(row, row), *(f"{case[row]:.{digits}f}" for case in result.values()))
     console.print(table)
     return result

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any
 
@@ -50,7 +53,9 @@ def run(seconds: float = 2.0, runs: int = 2) -> dict[str, dict[str, float]]:
     Returns:
         Case → mean CPU time of a tick and of its parts in µs ("tick", "plant", …); CPU time in s of a loop per
         simulated second ("loop") and of a whole run ("run"); wall time in s per run of many in one process and in as
-        many as there are runs ("rollout, …"). Run it with OMP_NUM_THREADS=1 on an idle machine.
+        many as there are runs ("rollout, …"), how many times faster these are ("gain of …"), and as a yardstick how
+        many times faster so many processes of nothing but arithmetic are in the same minute. Run it with
+        OMP_NUM_THREADS=1 on an idle machine.
     """
     return {name: _case(*case, seconds, runs) for name, case in CASES.items()}
 
@@ -63,11 +68,52 @@ def _case(study_name: str, case: str, controller: str, seconds: float, runs: int
     run_case(study, config, figures=False)
     found["run"] = time.process_time() - begin
     configs = [merged(config, {"seed": config.seed + k}) for k in range(runs)]
-    for jobs in dict.fromkeys((1, min(runs, os.cpu_count() or 1))):
+    most = min(runs, os.cpu_count() or 1)
+    taken: dict[int, float] = {}
+    for jobs in dict.fromkeys((1, most)):
         begin = time.perf_counter()
         results_in_order(study_name, configs, jobs)
-        found[f"rollout, s a run with {jobs} job{'s' if jobs > 1 else ''}"] = (time.perf_counter() - begin) / runs
+        taken[jobs] = time.perf_counter() - begin
+        found[f"rollout, s a run with {jobs} job{'s' if jobs > 1 else ''}"] = taken[jobs] / runs
+    if most > 1:
+        found[f"gain of {most} jobs"] = taken[1] / taken[most]
+        found[f"gain of {most} processes of arithmetic"] = gain_of_arithmetic(most)
     return found
+
+
+def gain_of_arithmetic(processes: int, steps: int = 10_000_000) -> float:
+    """How many times faster processes of nothing but arithmetic are than one that does the work of all: what the
+    machine has for a rollout at all. Their start is not timed. Args: processes; steps: of each of them."""
+    return _arithmetic(1, processes * steps) / _arithmetic(processes, steps)
+
+
+_ARITHMETIC = """
+import sys, time
+print("ready", flush=True)
+steps, x = int(sys.stdin.readline()), 0.4
+begin = time.monotonic()
+for _ in range(steps):
+    x = 3.7 * x * (1.0 - x)
+print(begin, time.monotonic())
+"""
+
+
+def _arithmetic(processes: int, steps: int) -> float:
+    """s from the first begin to the last end, on the clock that all processes share."""
+    call = [sys.executable, "-c", _ARITHMETIC]
+    with ExitStack() as opened:
+        children = [
+            opened.enter_context(subprocess.Popen(call, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+            for _ in range(processes)
+        ]
+        pipes = [(child.stdin, child.stdout) for child in children if child.stdin and child.stdout]
+        for _, said in pipes:
+            said.readline()
+        for asked, _ in pipes:
+            asked.write(f"{steps}\n")
+            asked.flush()
+        times = [tuple(map(float, said.readline().split())) for _, said in pipes]
+    return max(end for _, end in times) - min(begin for begin, _ in times)
 
 
 def _loop(study: Study[Any], config: CaseConfig, seconds: float) -> dict[str, float]:
