@@ -61,6 +61,7 @@ inline Load load_of(const LoadRow& row) {
 class PythonSurface final : public Surface {
  public:
   explicit PythonSurface(nb::object near) : near_(std::move(near)) {}
+  bool in_python() const override { return true; }
   double near(const Vec3& place, Vec3& normal) const override {
     const nb::object found = near_(nb::make_tuple(place.x, place.y, place.z));
     Numbers numbers;
@@ -165,7 +166,7 @@ inline void bind_stages(nb::module_& m) {
           nb::kw_only(), "filter"_a, "touch"_a, "least_force"_a, "least_motion"_a, "noise"_a, "correlated"_a,
           "samples"_a, "least_samples"_a, "accuracy"_a, "drift"_a = 0.0)
       .def("step", &fit_step, "force"_a, "depth"_a, "rate"_a, "memory"_a.noconvert());
-  nb::class_<Stage>(m, "Stage");
+  nb::class_<Stage>(m, "Stage").def_prop_ro("in_python", &Stage::in_python);
   nb::class_<WrenchStage, Stage>(m, "WrenchStage")
       .def("__init__", &init_wrench, nb::kw_only(), "robot"_a.none(), "velocity_gain"_a, "begin"_a, "end"_a, "linger"_a,
            "carried"_a, "contact_frames"_a, "acceleration_cutoff"_a, "tare"_a.none());

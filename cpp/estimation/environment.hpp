@@ -16,6 +16,7 @@ class EnvironmentStage final : public Stage {
                    const EnvironmentFit& fit, double sliding, double reach, double kept);
 
   std::unique_ptr<Stage> bound(int n, Names& frames) const override;
+  bool in_python() const override { return surface_ && surface_->in_python(); }
   int size() const override { return fit_size + 3; }  // and where the estimate was found
   void init(const Reading& reading, double* memory) const override;
   Refusal step(const Reading& reading, Belief& belief, double* memory) override;

@@ -25,6 +25,7 @@ class MomentumStage final : public Stage {
   MomentumStage(std::shared_ptr<const Tree> robot, ObserverSettings settings);
 
   std::unique_ptr<Stage> bound(int n, Names& frames) const override;
+  bool in_python() const override { return settings_.surface && settings_.surface->in_python(); }
   int size() const override { return 1 + (3 + settings_.late) * n_; }
   void init(const Reading& reading, double* memory) const override;
   void begin(const Reading& reading, const Belief& belief, double* memory) override;

@@ -38,6 +38,8 @@ using Names = std::vector<std::string>;
 class Stage {
  public:
   virtual ~Stage() = default;
+  // Whether it asks anything in Python.
+  virtual bool in_python() const { return false; }
   // A stage for n joints and wrenches of these names; leaves in `frames` the names of the wrenches that it gives.
   virtual std::unique_ptr<Stage> bound(int n, Names& frames) const = 0;
   // Of a bound stage: how many numbers it remembers.

@@ -8,6 +8,8 @@ class Surface {
  public:
   virtual ~Surface() = default;
   // Signed distance [m] of a place, negative inside the material, and the outward unit normal nearest to it.
+  // Whether it is asked in Python.
+  virtual bool in_python() const { return false; }
   virtual double near(const Vec3& place, Vec3& normal) const = 0;
 };
 

@@ -19,6 +19,8 @@ class StepLimitPart final : public Part {
 
   // Its own numbers, then those of the controller inside.
   int memory_size() const override { return limit_.memory_size() + inner_.memory_size(); }
+  void begin() override { inner_.begin(); }
+  void rewind() override { inner_.rewind(); }
   bool step(double* row, double* memory) override {
     double* inside = memory + limit_.memory_size();
     if (!inner_.step(row, inside)) return false;

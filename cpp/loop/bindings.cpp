@@ -25,11 +25,14 @@ std::vector<Span> within(const std::vector<SpanRow>& rows, int width) {
 }
 
 void build(Block* self, int width, Part& estimator, Part& controller, World& world,
-           const std::vector<SpanRow>& measured, const std::vector<SpanRow>& made, int torque,
+           const std::vector<SpanRow>& measured, const std::vector<SpanRow>& estimated,
+           const std::vector<SpanRow>& made, const std::vector<SpanRow>& drawn, std::vector<int> unknown, int torque,
            std::vector<double> most) {
+  for (const int place : unknown) within({{place, 1}}, width);
   within({{torque, int(most.size())}}, width);
-  new (self) Block({width, within(measured, width), within(made, width), torque, std::move(most)}, estimator,
-                   controller, world);
+  new (self) Block({width, within(measured, width), within(estimated, width), within(made, width), within(drawn, width),
+                    std::move(unknown), torque, std::move(most)},
+                   estimator, controller, world);
 }
 
 nb::tuple run(Block& block, const Packed<double, 2>& rows, int ticks, const Packed<double, 1>& memory,
@@ -55,8 +58,9 @@ NB_MODULE(_loop, m) {
   nb::class_<Part>(m, "Part").def_prop_ro("memory_size", &Part::memory_size);
   nb::class_<World>(m, "World");
   nb::class_<Block>(m, "Block")
-      .def("__init__", &build, "width"_a, "estimator"_a, "controller"_a, "world"_a, "measured"_a, "made"_a, "torque"_a,
-           "most"_a, nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>(), nb::keep_alive<1, 5>())
+      .def("__init__", &build, "width"_a, "estimator"_a, "controller"_a, "world"_a, "measured"_a, "estimated"_a,
+           "made"_a, "drawn"_a, "unknown"_a, "torque"_a, "most"_a, nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>(),
+           nb::keep_alive<1, 5>())
       .def_prop_ro("memory_size", &Block::memory_size)
       .def("run", &run, "rows"_a.noconvert(), "ticks"_a, "memory"_a.noconvert(), "wall"_a.noconvert());
 }

@@ -3,6 +3,7 @@
 #include "binding/chain_model.hpp"
 #include "binding/node.hpp"
 #include "binding/nodes.hpp"
+#include "binding/part.hpp"
 #include "binding/solver.hpp"
 
 NB_MODULE(_mpc, m) {
@@ -13,6 +14,7 @@ NB_MODULE(_mpc, m) {
   binding::bind_node(m);
   binding::bind_solver(m);
   binding::bind_step(m);
+  binding::bind_part(m);
   m.def("instruction_set", &instruction_set);
   m.def("available_instruction_sets", &available_instruction_sets);
   m.def("use_instruction_set", &use_instruction_set, nanobind::arg("name"));

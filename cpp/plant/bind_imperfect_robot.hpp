@@ -68,24 +68,7 @@ class PyImperfectRobot {
     return run(row, draw, robot.physics(), d, asked, pushes, to);
   }
 
- private:
-  const Settings& settings() const { return robot_.settings(); }
-  Reading reading(double* out) const {
-    const int n = settings().n;
-    return {out, out + n, out + 2 * n, out + 4 * n};
-  }
-  double* sent(double* out) const { return out + 3 * settings().n; }
-  True truth(const ConstVector& now) const {
-    const int n = settings().n;
-    expect(now.size(), 3 * n + 6 * settings().frames, "what is true");
-    return {now.data(), now.data() + n, now.data() + 2 * n, now.data() + 3 * n};
-  }
-  void check(const Vector& memory, const ConstVector& draw, const Vector& out) const {
-    expect(memory.size(), memory_size(), "memory");
-    expect(draw.size(), draws(), "draw");
-    expect(out.size(), reading_size(), "out");
-  }
-
+  // The same without Python.
   int64_t run(double* memory, const double* draw, const Physics& physics, mjData* data, const double* command,
               const std::vector<Push>& pushes, double* out) const {
     const Settings& s = settings();
@@ -107,6 +90,24 @@ class PyImperfectRobot {
       robot_.sense(memory, draw, now, reading(out));
     }
     return static_cast<int64_t>(touching);
+  }
+  const Settings& settings() const { return robot_.settings(); }
+
+ private:
+  Reading reading(double* out) const {
+    const int n = settings().n;
+    return {out, out + n, out + 2 * n, out + 4 * n};
+  }
+  double* sent(double* out) const { return out + 3 * settings().n; }
+  True truth(const ConstVector& now) const {
+    const int n = settings().n;
+    expect(now.size(), 3 * n + 6 * settings().frames, "what is true");
+    return {now.data(), now.data() + n, now.data() + 2 * n, now.data() + 3 * n};
+  }
+  void check(const Vector& memory, const ConstVector& draw, const Vector& out) const {
+    expect(memory.size(), memory_size(), "memory");
+    expect(draw.size(), draws(), "draw");
+    expect(out.size(), reading_size(), "out");
   }
 
   ImperfectRobot robot_;

@@ -15,6 +15,9 @@ class Part {
   virtual int memory_size() const { return 0; }  // numbers that it remembers
   // False: Python has to look at this tick. What is written and remembered is of no use then.
   virtual bool step(double* row, double* memory) = 0;
+  // A part that keeps something beyond its memory: a block begins; the block begins again.
+  virtual void begin() {}
+  virtual void rewind() {}
   // A part outside sent that much less than the torque (n) [N m] that was asked for.
   virtual void kept_back(double*, const double*) const {}
 };

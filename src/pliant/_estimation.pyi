@@ -84,6 +84,10 @@ class EnvironmentFit:
 class Stage:
     """A part of a chain."""
 
+    @property
+    def in_python(self) -> bool:
+        """Whether it asks anything in Python, as a surface that is not compiled."""
+
 class WrenchStage(Stage):
     """Joint signals as they are, contact wrenches, and what touches."""
 

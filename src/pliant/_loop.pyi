@@ -27,7 +27,10 @@ class Block:
         controller: Part,
         world: World,
         measured: Sequence[tuple[int, int]],
+        estimated: Sequence[tuple[int, int]],
         made: Sequence[tuple[int, int]],
+        drawn: Sequence[tuple[int, int]],
+        unknown: Sequence[int],
         torque: int,
         most: Sequence[float],
     ) -> None:
@@ -36,7 +39,10 @@ class Block:
             width: numbers of a row.
             estimator, controller, world: the parts.
             measured: (begin, size) of what must be finite before the estimator is stepped.
+            estimated: of what must be finite before the controller is.
             made: of what must be finite after the controller was.
+            drawn: of what noise makes different from the row before.
+            unknown: places that hold no number after the estimator was stepped.
             torque: where the command's torque begins.
             most: (n,) N·m that it may be; empty: there is no limit.
         """

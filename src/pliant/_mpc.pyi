@@ -14,6 +14,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pliant._loop import Part
+
 Kind: TypeAlias = Literal["force_feedback", "classical", "torque_feedback", "free", "naive_viscoelastic"]
 Axes: TypeAlias = Literal["local", "world", "surface"]
 Status: TypeAlias = Literal[
@@ -474,3 +476,31 @@ def available_instruction_sets() -> list[str]:
 
 def use_instruction_set(name: str) -> None:
     """Choose for objects made from now on (tests, benchmarks); ValueError lists the available ones."""
+
+class StepPart(Part):
+    """A controller's step as a part of a compiled loop, with one state, which it consumes."""
+
+    def __init__(
+        self,
+        step: ControllerStep,
+        state: ControllerState,
+        places: Mapping[str, int],
+        count: int,
+        phase: str,
+        names: Sequence[str],
+        begin: int,
+    ) -> None:
+        """
+        Args:
+            step: the controller.
+            state: of it.
+            places: where a row has the signals, by the names in `PartPlaces` (cpp/mpc/binding/part.hpp); what is
+                missing is not given.
+            count: instants of the preview; 0: there is none.
+            phase: of the reference.
+            names: phases by number, as the preview has them.
+            begin: where torque, clamped torque and diagnostics begin.
+
+        Raises:
+            ValueError: a state of another controller, or a place that is missing.
+        """

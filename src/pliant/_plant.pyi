@@ -172,3 +172,23 @@ class SimulatedRobot(World):
 
     def begin(self, periods: int, pushes: Sequence[tuple[int, Sequence[float], float, float]]) -> None:
         """A block begins. Args: periods since the start; pushes beside those of the robot."""
+
+class ImperfectWorld(SimulatedRobot):
+    """The same with imperfect sensors and actuators. An outcome is a reading, then that of the robot inside."""
+
+    def __init__(
+        self,
+        chain: ImperfectRobot,
+        physics: Physics,
+        truth: TruthRow,
+        data: Any,
+        period: float,
+        at: Sequence[int],
+        memory: Array,
+    ) -> None:
+        """Args: what is imperfect; the others as of `SimulatedRobot`, the period that of the robot inside; what the
+        imperfect robot remembers, which is written over."""
+
+    def draw(self, draws: Array) -> None:
+        """Told before a block: the standard normal numbers of its periods, side by side, which are read where they
+        lie."""

@@ -87,15 +87,20 @@ class Blocks:
         taken = [unchanged(observer, "block") for observer in observers]
         self._observers = [take for take in taken if take is not None]
         faced = all(unchanged(part, "compiled_face") is not None for part in self._parts)
-        self.possible = faced and len(self._observers) == len(taken) and not plant.noisy
+        self.possible = faced and len(self._observers) == len(taken)
         """False: not with these parts or observers"""
         self._form: BlockForm | None = None
         self._numbers, self._wall = np.empty((0, 0)), np.empty((MOST, 2))
         self._rest, self._pause = 0, 1
 
-    def run(self, at: Standing, clock: Iterator[object]) -> Ran | None:
-        """Runs a block; None: the next tick is for Python. Of the clock it takes a period for each tick."""
-        if not self.possible or type(clock) is not _RANGE:
+    def run(self, at: Standing | None, clock: Iterator[object]) -> Ran | None:
+        """Runs a block; None: the next tick is for Python. Of the clock it takes a period for each tick.
+
+        Args:
+            at: None: the next tick is for Python.
+            clock: if it is no range, somebody waits for its periods.
+        """
+        if at is None or type(clock) is not _RANGE:
             return None
         if self._rest:
             self._rest -= 1
@@ -121,14 +126,16 @@ class Blocks:
         if known is None or not most:
             return None
         form = self._form
-        if form is None or not form.holds(at.world, known, at.states[2]):
+        if form is None or not form.holds(at.world, at.estimate, known, at.states[2]):
             self._form = None
             robot = face_of(plant, CompiledPlant, at.world)
-            believes = face_of(estimator, CompiledEstimator, at.measurement, at.states[0])
-            asks = face_of(controller, CompiledController, at.estimate)
+            believes = face_of(estimator, CompiledEstimator, at.measurement, at.states[0], at.estimate)
+            asks = face_of(controller, CompiledController, at.estimate, at.states[2])
             if robot is None or believes is None or asks is None:
                 return None
-            form = self._form = BlockForm.of(Faces(robot, believes, known, asks), at.world, at.states[2], self._most)
+            form = self._form = BlockForm.of(
+                Faces(robot, believes, known, asks), at.world, at.states[2], self._most, plant.noisy
+            )
         return None if form is None else self._run(form, known, at, most)
 
     def _run(self, form: BlockForm, known: KnownReferences, at: Standing, most: int) -> Ran | None:
@@ -145,7 +152,11 @@ class Blocks:
             return None
         last, after = form.tick(rows[ticks - 1].copy()), rows[ticks].copy()
         own = form.memory_of_estimator
-        states = faces.estimator.state(memory[:own], est), ref, faces.controller.state(memory[own:], ctl)
+        states = (
+            faces.estimator.state(memory[:own], est),
+            known.after(ref, ticks),
+            faces.controller.state(memory[own:], ctl),
+        )
         numbers = after[form.measurement]
         measurement = faces.plant.measurement(float(after[0]), numbers)
         stands = Standing(measurement, at.world, last.estimate, last.reference, last.command, states)

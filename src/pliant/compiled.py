@@ -62,6 +62,23 @@ def _address(array: Array) -> int:
     return array.__array_interface__["data"][0]
 
 
+@dataclass(frozen=True)
+class Sample:
+    """Signals made of views of a row, by which a part finds what it reads."""
+
+    row: Array
+    estimate: Estimate
+    reference: Reference
+    contacts: Mapping[str, int]
+    """frame → where the row says whether it touches"""
+    environments: Mapping[str, int]
+    """frame → where the row has stiffness, damping and their uncertainties"""
+    ahead: int
+    """where the row says whether there is a preview; -1: there is none"""
+    names: tuple[tuple[str, ...], int]
+    """names of phases, and where the row has the numbers of those of a preview"""
+
+
 class CompiledPlant(ABC):
     """A simulated robot in one world. `size`: numbers of a measurement; `truth_size`: of what is true."""
 
@@ -112,6 +129,18 @@ class CompiledEstimator(ABC):
         """The estimate (size,) of a measurement."""
 
     @abstractmethod
+    def fits(self, estimate: Estimate) -> bool:
+        """Whether an estimate is made as these are."""
+
+    @abstractmethod
+    def contacts(self, begin: int) -> Mapping[str, int]:
+        """Frame → where the row says whether it touches. Args: where its own numbers begin."""
+
+    @abstractmethod
+    def environments(self, begin: int) -> Mapping[str, int]:
+        """Frame → where the row has four numbers of its environment: what is known, or not, in every tick."""
+
+    @abstractmethod
     def part(self, measurement: Measurement, row: Array, begin: int) -> Part | None:
         """The compiled part. Args: a measurement made of views of the row; where its own numbers begin. None: it cannot
         read such a measurement."""
@@ -139,9 +168,8 @@ class CompiledController(ABC):
         """The command (size,) at a time in s."""
 
     @abstractmethod
-    def part(self, estimate: Estimate, reference: Reference, row: Array, begin: int) -> Part | None:
-        """The compiled part. Args: signals made of views of the row, or of what does not change; where its own numbers
-        begin. None: it cannot read such signals."""
+    def part(self, given: Sample, begin: int) -> Part | None:
+        """The compiled part. Args: what it may read; where its own numbers begin. None: it cannot read such signals."""
 
     @abstractmethod
     def memory(self, state: Any) -> Array:
@@ -159,6 +187,10 @@ class KnownReferences(ABC):
     """
 
     size: int
+    ahead: int = -1
+    """which of the numbers says whether there is a preview; -1: there is none"""
+    names: tuple[tuple[str, ...], int] = ((), 0)
+    """names of phases, and where the numbers of those of a preview begin"""
 
     @abstractmethod
     def reference(self, time: float, numbers: Array) -> Reference:
@@ -168,6 +200,10 @@ class KnownReferences(ABC):
     def fill(self, times: Array, rows: Array) -> int:
         """Writes the references at times in s into rows (k, size). Returns how many of them have the structure that
         `reference` gives them: the first that has not is left to Python."""
+
+    def after(self, state: Any, ticks: int) -> Any:
+        """The source's state after so many of the ticks that were filled in last. Args: state before them."""
+        return state
 
 
 @dataclass(frozen=True)

@@ -118,8 +118,11 @@ class _Cycle:
         assert self._watched is not None
         return self._watched
 
-    def standing(self, measurement: Measurement, world: Any) -> Standing:
-        """Where the loop stands before a measurement's tick, after the first one."""
+    def standing(self, measurement: Measurement, world: Any) -> Standing | None:
+        """Where the loop stands before a measurement's tick, after the first one. None: a sensor reads the same
+        again."""
+        if not self._guard.fresh(measurement, self.watched):
+            return None
         assert self._estimate is not None
         assert self._reference is not None
         assert self.command is not None

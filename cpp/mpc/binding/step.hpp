@@ -16,11 +16,13 @@ struct PyState {
   step::Source source = step::Source::plan;
   nb::object channels;  // of the last solve; none: they have to be made
   step::Ahead ahead;    // scratch space
+  bool stale = false;   // whether the channels are those of an earlier solve
 };
 
 // Diagnostics of the last solve, a new dictionary for each; names are those of pliant.mpc.diagnostics.
 inline nb::object channels_of(PyState& s) {
-  if (s.channels.is_valid()) return s.channels;
+  if (s.channels.is_valid() && !s.stale) return s.channels;
+  s.stale = false;
   const step::Memory& m = s.state.memory;
   const size_t N = size_t(s.state.options.horizon);
   nb::dict found;
@@ -53,6 +55,14 @@ class PyStep {
                        step::Source::plan,
                        {},
                        {}};
+  }
+
+  const step::Controller& core() const { return core_; }
+
+  int phase_of(nb::handle name) const {
+    for (size_t i = 0; i < phases_.size(); ++i)
+      if (same_text(phases_[i], name)) return int(i);
+    return nb::len(name) == 0 ? step::unnamed_phase : step::unknown_phase;
   }
 
   // (fault, node, value, normal) or None.
@@ -91,19 +101,10 @@ class PyStep {
   }
 
  private:
-  step::Controller core_;
-  nb::object frame_, contact_frame_;
-  std::vector<nb::object> phases_;
-
   static constexpr const char* fault_names[] = {
       "none",  "no_wrench",     "no_disturbance",      "no_task", "reference_not_finite",
       "pulls", "unknown_phase", "no_phase_for_contact"};
 
-  int phase_of(nb::handle name) const {
-    for (size_t i = 0; i < phases_.size(); ++i)
-      if (same_text(phases_[i], name)) return int(i);
-    return nb::len(name) == 0 ? step::unnamed_phase : step::unknown_phase;
-  }
   void read_tasks(nb::handle tasks, std::optional<ReadTask>& own, std::optional<ReadTask>& first) const {
     for (nb::handle task : tasks) {
       if (!first) first.emplace(task);
@@ -138,6 +139,10 @@ class PyStep {
       row += n;
     }
   }
+
+  step::Controller core_;
+  nb::object frame_, contact_frame_;
+  std::vector<nb::object> phases_;
 };
 
 }  // namespace pliant::mpc::binding

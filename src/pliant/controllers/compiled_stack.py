@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 from pliant import _impedance
-from pliant.compiled import CompiledController, place_of
+from pliant.compiled import CompiledController, Sample, place_of
 from pliant.controllers.stack_input import seen_of, target_of
-from pliant.signals import Command, Estimate, Reference, TaskReference
+from pliant.signals import Command, Reference, TaskReference
 from pliant.spatial import Array
 
 
@@ -41,8 +41,9 @@ class CompiledStack(CompiledController):
     def command(self, time: float, numbers: Array) -> Command:
         return self._command(time, numbers)
 
-    def part(self, estimate: Estimate, reference: Reference, row: Array, begin: int) -> _impedance.StackPart | None:
-        q, targets = place_of(estimate.q, row), [_place(task, row) for task in self._targets(reference)]
+    def part(self, given: Sample, begin: int) -> _impedance.StackPart | None:
+        row = given.row
+        q, targets = place_of(given.estimate.q, row), [_place(task, row) for task in self._targets(given.reference)]
         found = [target for target in targets if target is not None]
         if q is None or len(found) < len(targets):
             return None

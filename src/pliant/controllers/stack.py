@@ -180,7 +180,7 @@ class Stack(Controller[StackState]):
             raise SignalError(self._not_finite(code, estimate))
         return self._command(estimate.time, out), StackState(memory, tuned)
 
-    def compiled_face(self, estimate: Estimate) -> CompiledStack | None:
+    def compiled_face(self, estimate: Estimate, state: StackState) -> CompiledStack | None:
         if self._biased:
             return None
         return CompiledStack(self._core, self._arm, self._names, self._size, self._command)

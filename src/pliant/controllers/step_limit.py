@@ -127,9 +127,13 @@ class StepLimit(Controller[StepLimitState]):
             channels = {**given, **dict(zip(CHANNELS, (float(memory[-1]), exceeded or 0.0), strict=True))}
         return Command(command.time, out[:n], out[n : 2 * n], channels), StepLimitState(inner, memory)
 
-    def compiled_face(self, estimate: Estimate) -> CompiledStepLimit | None:
-        inner = face_of(self.inner, CompiledController, estimate)
-        return None if inner is None else CompiledStepLimit(self._core, inner, self._n, self._followed, SPENDABLE)
+    def compiled_face(self, estimate: Estimate, state: StepLimitState) -> CompiledStepLimit | None:
+        inner = face_of(self.inner, CompiledController, estimate, state.inner)
+        return (
+            None
+            if inner is None
+            else CompiledStepLimit(self._core, inner, self._n, self._followed, tuple(CHANNELS), SPENDABLE)
+        )
 
     def _followed(self, layout: FlatLayout) -> FlatLayout:
         """The inner controller's layout with the channels of the bound."""

@@ -104,12 +104,13 @@ class ChainedEstimator(Estimator[ChainState]):
         found = self._found(bound, measurement, out) if given is None else self._completing(bound, given, out)
         return found, ChainState(completed, state.frames, memory)
 
-    def compiled_face(self, measurement: Measurement, state: ChainState) -> CompiledChain | None:
-        if self._completed is not None or self.environment is not None:
-            return None  # somebody else's estimates, or a surface that only Python may know
-        bound = self._for(measurement.q.size, state.frames)
+    def compiled_face(self, measurement: Measurement, state: ChainState, last: Estimate) -> CompiledChain | None:
+        if self._completed is not None or any(stage.in_python for stage in self._stages):
+            return None
+        bound, known = self._for(measurement.q.size, state.frames), bool(last.environments)
         found = partial(self._found, bound)
-        return CompiledChain(self._stages, state.frames, bound.size, found)
+        frame = self.environment
+        return CompiledChain(self._stages, state.frames, bound.size, bound.touches, frame, known, found)
 
     # ------------------------------------------------------------------ inside
 
@@ -157,11 +158,12 @@ class _Bound:
         """row → views of position, velocity, torque and disturbance of the joints, (n,) each"""
         self.wrenches = NamedRows(core.frames, 4 * n, 6).of
         """row → frame → wrench (6,)"""
-        self._touches = tuple(enumerate(core.frames, start=4 * n + 6 * core.rows))
+        self.touches = {frame: at for at, frame in enumerate(core.frames, start=4 * n + 6 * core.rows)}
+        """frame → which number of a row says whether it touches"""
 
     def contacts(self, out: Array) -> dict[str, bool]:
         """Frame → whether it touches."""
-        return {frame: bool(out.item(at)) for at, frame in self._touches}
+        return {frame: bool(out.item(at)) for frame, at in self.touches.items()}
 
 
 def _environments(frame: str, out: Array) -> dict[str, Environment]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from pliant._estimation import ChainPart, Stage
 from pliant.compiled import CompiledEstimator, place_of
+from pliant.frozen import changed
 from pliant.signals import Estimate, Measurement
 from pliant.spatial import Array
 
@@ -18,7 +19,10 @@ class CompiledChain(CompiledEstimator):
     Args:
         stages: of the chain.
         frames: of the sensors that it looks at.
-        size: numbers of an estimate.
+        size: numbers of an estimate, of which the last four are of the environment.
+        touches: frame → which of them says whether it touches.
+        environment: frame whose environment it finds; None: of none.
+        known: whether it is known.
         found: measurement and numbers (size,) → estimate.
     """
 
@@ -27,12 +31,26 @@ class CompiledChain(CompiledEstimator):
         stages: Sequence[Stage],
         frames: tuple[str, ...],
         size: int,
+        touches: Mapping[str, int],
+        environment: str | None,
+        known: bool,
         found: Callable[[Measurement, Array], Estimate],
     ) -> None:
         self._stages, self._frames, self.size, self._found = stages, frames, size, found
+        self._touches, self._environment, self._known = touches, environment, known
 
     def estimate(self, measurement: Measurement, numbers: Array) -> Estimate:
-        return self._found(measurement, numbers)
+        found = self._found(measurement, numbers)
+        return found if self._known or not found.environments else changed(found, environments={})
+
+    def fits(self, estimate: Estimate) -> bool:
+        return bool(estimate.environments) == self._known and list(estimate.contacts) == list(self._touches)
+
+    def contacts(self, begin: int) -> Mapping[str, int]:
+        return {frame: begin + place for frame, place in self._touches.items()}
+
+    def environments(self, begin: int) -> Mapping[str, int]:
+        return {} if self._environment is None else {self._environment: begin + self.size - 4}
 
     def part(self, measurement: Measurement, row: Array, begin: int) -> ChainPart | None:
         joints = (measurement.q, measurement.v, measurement.torque, measurement.torque_sent)

@@ -165,6 +165,12 @@ class Guard:
         watched.seen, watched.reading, watched.missed, watched.faults = True, reading, 0, 0
         watched.q, watched.v = reading.q.copy(), reading.v.copy()
         watched.estimated, watched.torque = reading.time, torque.copy()
+        watched.equal.clear()
+        watched.last.update({name: _signal(reading, name) for name in self._noisy})
+
+    def fresh(self, reading: Measurement, watched: Watched) -> bool:
+        """Whether every noisy sensor reads something new."""
+        return all(_signal(reading, name) != watched.last.get(name) for name in self._noisy)
 
     def now(self, reading: Measurement, watched: Watched) -> float:
         """The time of a reading, sound or not; that of the last sound one if it has none. In s."""

@@ -12,6 +12,7 @@ from pliant.interfaces import Controller, Lookahead, Needs
 from pliant.mpc import diagnostics
 from pliant.mpc.chain import chain_from_robot
 from pliant.mpc.compensation import delays_of
+from pliant.mpc.compiled_controller import CompiledMpc
 from pliant.mpc.config import MpcConfig
 from pliant.mpc.kernel import kernel_step
 from pliant.mpc.make_problem import problem_from_robot
@@ -93,11 +94,18 @@ class MpcController(Controller[MpcState]):
         if refusal is not None:
             raise refused(refusal, self.problem, estimate, reference)
         torque, clamped, disturbance = out
-        channels: Mapping[str, float | Array] = {
-            **state.channels,
-            "mpc/source": float(state.source),
-            "mpc/failures": float(state.failures),
-            "mpc/disturbance": disturbance,
-            "mpc/force_shift": state.force_shift,
-        }
-        return Command(estimate.time, torque, clamped, channels), state
+        return Command(estimate.time, torque, clamped, _channels(state, disturbance)), state
+
+    def compiled_face(self, estimate: Estimate, state: MpcState) -> CompiledMpc:
+        n, frames = self.robot.n, (self.config.frame, self.problem.contact_frame)
+        return CompiledMpc(self._core, state, frames, n, _channels(state, np.zeros(n)))
+
+
+def _channels(state: MpcState, disturbance: Array) -> dict[str, float | Array]:
+    return {
+        **state.channels,
+        "mpc/source": float(state.source),
+        "mpc/failures": float(state.failures),
+        "mpc/disturbance": disturbance,
+        "mpc/force_shift": state.force_shift,
+    }

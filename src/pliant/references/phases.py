@@ -12,6 +12,7 @@ from pliant._references import RowsAhead, columns_of, parts_of
 from pliant.errors import ConfigError, RunFailedError
 from pliant.frozen import changed
 from pliant.interfaces import CLOCK_ROUNDING, Lookahead, ReferenceSource
+from pliant.references.known_phases import KnownPhase
 from pliant.references.landing import Height
 from pliant.references.phase_state import PhaseState as PhaseState
 from pliant.references.phase_state import moved, moved_ahead
@@ -93,6 +94,13 @@ class PhasedSource(ReferenceSource[PhaseState]):
             preview = self._preview(state, time + ahead.lead)
             state = changed(state, next_look=time + ahead.every)
         return Reference(time, (task,), posture, phase.name, preview), state
+
+    def compiled_face(self, estimate: Estimate, state: PhaseState) -> KnownPhase | None:
+        if self.phases[state.index].ends_on_contact or estimate.time >= (until := self._until(state)):
+            return None
+        names = [phase.name for phase in self.phases]
+        sample, _ = self.step(estimate, changed(state, next_look=-np.inf))
+        return KnownPhase(sample, names, lambda time, at: self.step(changed(estimate, time=time), at), state, until)
 
     # ------------------------------------------------------------------ inside
 

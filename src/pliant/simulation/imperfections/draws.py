@@ -48,12 +48,28 @@ class Draws:
                 row[begin:end] = self.generators[source].standard_normal(end - begin)
         return row
 
+    def ahead(self, count: int) -> Array:
+        """The rows (count, width) that come next, which stay to be taken. Args: count: a multiple of what is taken at
+        once."""
+        if len(self.block) - self.row < count:
+            more = np.zeros((count, self.block.shape[1]))
+            self._draw(more)
+            self.block, self.row = np.concatenate([self.block[self.row :], more]), 0
+        return self.block[self.row : self.row + count]
+
+    def pass_by(self, count: int) -> None:
+        """Takes rows that `ahead` has given."""
+        self.row += count
+
     def take(self, count: int) -> Array:
         """The next rows (count, width)."""
         if self.row >= len(self.block):
-            for source, drawn in self.generators.items():
-                begin, end = self.columns[source]
-                self.block[:, begin:end] = drawn.standard_normal((len(self.block), end - begin))
+            self._draw(self.block)
             self.row = 0
         self.row += count
         return self.block[self.row - count : self.row]
+
+    def _draw(self, block: Array) -> None:
+        for source, drawn in self.generators.items():
+            begin, end = self.columns[source]
+            block[:, begin:end] = drawn.standard_normal((len(block), end - begin))

@@ -14,13 +14,16 @@ import numpy as np
 import numpy.typing as npt
 
 from pliant._values import Views
+from pliant.compiled import face_of
 from pliant.errors import ConfigError
 from pliant.interfaces import Compensation, Plant
 from pliant.named_rows import NamedRows
 from pliant.sampling import whole_periods
 from pliant.signals import Command, Measurement, Truth
 from pliant.simulation.compiled_period import compiled_period_of
+from pliant.simulation.compiled_robot import CompiledRobot
 from pliant.simulation.imperfections.chain import Sizes, chain_of, drawn_once, draws_of, wrench_sources
+from pliant.simulation.imperfections.compiled_robot import CompiledImperfectRobot, Rates
 from pliant.simulation.imperfections.config import Imperfections
 from pliant.simulation.imperfections.draws import Draws
 from pliant.simulation.plant import MujocoPlant
@@ -123,6 +126,13 @@ class ImperfectPlant(Plant[ImperfectWorld]):
             mask = self._chain.period(world.memory, draws, core, robot.data, torque, pushes, reading)
             world.time = self.inner.passed(robot, self._ticks * self._inner_steps, reading[split:], mask)
         return self._reading(world.time, reading), world
+
+    def compiled_face(self, world: ImperfectWorld) -> CompiledImperfectRobot | None:
+        inner = face_of(self.inner, CompiledRobot, world.inner)
+        if inner is None or self._period is None:
+            return None
+        rates, sensors = Rates(self._ticks, self._inner_steps), self._sizes.sensors
+        return CompiledImperfectRobot(self._chain, inner, world, rates, sensors, self._reading)
 
     def truth(self, world: ImperfectWorld) -> Truth | None:
         return self.inner.truth(world.inner)
