@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from typing import Annotated
 
 import typer
@@ -9,6 +10,8 @@ import typer
 from pliant import __version__
 from pliant.cli import running, tools  # each module registers its commands
 from pliant.cli.program import app, out
+
+_YOUNG = 100_000  # objects between two searches for cycles; Python's 700 search hundreds of times in what imports make
 
 __all__ = ["app", "main", "running", "tools"]
 
@@ -30,4 +33,5 @@ def _root(
 
 def main() -> None:
     """Entry point."""
+    gc.set_threshold(_YOUNG, 20, 20)
     app()

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pliant.errors import OutputError
 
 if TYPE_CHECKING:
@@ -99,9 +101,13 @@ def save(made: Figure, path: Path) -> Path:
         OutputError: it cannot be written.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from PIL import Image
 
+    canvas = FigureCanvasAgg(made)
+    canvas.draw()  # once; `savefig` draws twice
+    picture = np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[:, :, :3])  # figures are opaque
     try:
-        FigureCanvasAgg(made).print_png(path, metadata={"Software": None})  # the bytes of `savefig`, which draws twice
+        Image.fromarray(picture).save(path, format="PNG", compress_level=1, dpi=(made.dpi, made.dpi))
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror or error}") from error
     return path
