@@ -17,5 +17,6 @@ NB_MODULE(_values, m) {
       .def("of", &Views::of, "numbers"_a);
   nb::class_<NamedViews>(m, "NamedViews")
       .def(nb::init<std::vector<nb::str>, std::vector<Place>>(), "names"_a, "places"_a)
-      .def("of", &NamedViews::of, "numbers"_a);
+      .def("of", &NamedViews::of, "numbers"_a)
+      .def("into", &NamedViews::into, "numbers"_a, "named"_a);
 }

@@ -76,10 +76,13 @@ class NamedViews {
 
   nb::dict of(nb::handle numbers) const {
     nb::dict made;
-    if (places_.empty()) return made;
-    PyArrayObject* array = holder_of(numbers, size_);
-    for (size_t i = 0; i < places_.size(); ++i) made[names_[i]] = view(array, places_[i]);
+    if (!places_.empty()) into(numbers, made);
     return made;
+  }
+  void into(nb::handle numbers, nb::dict named) const {
+    PyArrayObject* array = holder_of(numbers, size_);
+    for (size_t i = 0; i < places_.size(); ++i)
+      if (PyDict_SetItem(named.ptr(), names_[i].ptr(), view(array, places_[i]).ptr()) < 0) throw nb::python_error();
   }
 
  private:

@@ -49,3 +49,6 @@ class NamedViews:
 
     def of(self, numbers: Array) -> dict[str, Array]:
         """Name → view. Raises ValueError for an array that does not have every place."""
+
+    def into(self, numbers: Array, named: dict[str, Any]) -> None:
+        """The same, added to what is already named. Raises ValueError as `of`."""

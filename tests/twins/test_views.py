@@ -54,6 +54,19 @@ def test_values_by_name() -> None:
     assert (rows.end, NamedRows((), 4, 6).of(numbers)) == (20, {})
 
 
+def test_values_are_added_to_those_that_have_names() -> None:
+    numbers, views = np.arange(6.0), NamedViews(["a", "b"], [(0, 2), (2, 2)])
+    named: dict[str, object] = {"c": 1.0, "b": 2.0}
+    before = sys.getrefcount(numbers)
+    views.into(numbers, named)
+    assert list(named) == ["c", "b", "a"]
+    assert np.array_equal(named["b"], [2.0, 3.0])  # type: ignore[arg-type]
+    named.clear()
+    assert sys.getrefcount(numbers) == before
+    with pytest.raises(ValueError, match="every place"):
+        views.into(numbers[:3], named)
+
+
 @pytest.mark.parametrize(
     "numbers", [np.zeros(4), np.zeros((2, 3)), np.zeros(6, dtype=int), np.zeros(12)[::2], [0.0] * 6, None]
 )

@@ -108,17 +108,19 @@ class HapticExploration(ReferenceSource[ExplorationState]):
             ConfigError: a task without impedance parameters.
         """
         plain, state.inner = self.inner.step(estimate, state.inner)
-        period = estimate.time - state.time
+        time, period = estimate.time, estimate.time - state.time
         if period < 0.0:
-            raise SignalError(f"time runs backwards: {estimate.time:g} s after {state.time:g} s")
-        state.time = estimate.time
+            raise SignalError(f"time runs backwards: {time:g} s after {state.time:g} s")
+        state.time = time
         tuning = plain.tuning
         if tuning is not state.rules.config and isinstance(tuning, ExplorationConfig):
             state.rules = FrameRules(tuning)
         diagnostics: dict[str, float | Array] = dict(plain.diagnostics)
         period = min(period, _LONGEST_PERIOD)
-        tasks = tuple([self._felt(task, estimate, state, period, diagnostics) for task in plain.tasks])
-        return changed(plain, tasks=tasks, diagnostics=diagnostics), state
+        tasks: list[TaskReference] = []
+        for task in plain.tasks:
+            tasks.append(self._felt(task, estimate, state, period, diagnostics))
+        return changed(plain, tasks=tuple(tasks), diagnostics=diagnostics), state
 
     def _felt(
         self,
@@ -165,7 +167,7 @@ class HapticExploration(ReferenceSource[ExplorationState]):
             explored.prepare(rules, tuning, modes, rotation)
             frame.channels = _channels(task.frame, explored.count)
         numbers, place, turns, clamped = explored.core.step(*told, estimate.time, period)
-        diagnostics.update(frame.channels.of(numbers))
+        frame.channels.into(numbers, diagnostics)
         if rotation is None and not turns and not clamped:
             return changed(task, position=place, tuning=tuning)
         return _shifted(task, explored, tuning, clamped)

@@ -71,11 +71,13 @@ class PlannedFrame:
 class PlannerState:
     """Owned by the loop."""
 
-    __slots__ = ("first", "frames", "inner")
+    __slots__ = ("clamped", "first", "frames", "inner")
 
     def __init__(self, inner: Any, first: Array) -> None:
         self.inner, self.first = inner, first
         self.frames: dict[str, PlannedFrame] = {}
+        self.clamped: dict[str, Array] = {}
+        """channel → shift (3,) m of the last target; another one where a shift changes"""
 
 
 class HarmonicPlanner(ReferenceSource[PlannerState]):
@@ -127,7 +129,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
             tasks.append(planned)
         diagnostics = goal.diagnostics
         if self.workspaces:
-            diagnostics = {**diagnostics, **{frame.channel: frame.clamped for frame in state.frames.values()}}
+            diagnostics = {**diagnostics, **state.clamped} if diagnostics else state.clamped
         found = changed(goal, tasks=tuple(tasks), diagnostics=diagnostics)
         if self.lookahead is not None:
             preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
@@ -166,6 +168,8 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         placed = _placed(task, frame, estimate.time)
         rests = frame.resting is not None and task.position is frame.position and task.rotation is frame.rotation
         frame.still = (task, placed) if rests else None
+        if state.clamped.get(frame.channel) is not frame.clamped:
+            state.clamped = {**state.clamped, frame.channel: frame.clamped}
         return placed
 
     @staticmethod
