@@ -74,5 +74,6 @@ NB_MODULE(_references, m) {
   m.def("parts_of", &parts, "row"_a, "offset"_a.none(), "height"_a);
   m.def("columns_of", &pliant::references::columns_of, "times"_a, "table"_a, "turning"_a);
   m.def("superposed", &pliant::references::superposed, "base"_a, "pieces"_a, "time"_a, "width"_a);
+  m.def("turning", &pliant::references::turning, "base"_a, "pieces"_a, "time"_a, "step"_a);
   pliant::references::bind_exploration(m);
 }

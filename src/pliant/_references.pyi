@@ -211,3 +211,22 @@ def superposed(
     Raises:
         ValueError: ways of another size than the base, or a width that does not hold it.
     """
+
+def turning(
+    base: tuple[float, ...],
+    pieces: tuple[tuple[float, float, tuple[float, ...], tuple[float, ...]], ...],
+    time: float,
+    step: float,
+) -> tuple[Array, Array]:
+    """Angular velocity (3,) rad/s and acceleration (3,) rad/s², world axes, of a rotation vector that is planned like
+    `superposed`: ω = J_l(r) ṙ (Chirikjian, Stochastic Models, vol. 2, eq. 10.86).
+
+    Args:
+        base: (3,) rad.
+        pieces: as of `superposed`.
+        time: s.
+        step: s, half of the time over which the acceleration is a difference of velocities.
+
+    Raises:
+        ValueError: another number of axes than three.
+    """

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+import pinocchio as pin
 
 from pliant.errors import ConfigError, RunFailedError
 from pliant.interfaces import ReferenceSource
@@ -117,10 +118,13 @@ class PlacedPhases(ReferenceSource[PlacedPhaseState]):
     ) -> None:
         if not phases:
             raise ConfigError("a list of phases needs one at least")
-        self.phases, self._robot, self._whole = tuple(phases), robot, whole
+        self.phases, self._whole = tuple(phases), whole
         self._tuning = tuning
         self.changes = tuple(sorted(changes, key=lambda change: change.time))
         self.frame = phases[0].task.frame
+        self._model, self._data, self._frame_id = robot.model, robot.model.createData(), robot.frame_id(self.frame)
+        self._seen: tuple[Estimate | None, Array] = None, np.zeros(3)
+        """the last estimate whose place was worked out, and that place (3,) m"""
         if tuning is None and any(change.tuning for change in changes):
             raise ConfigError(f"the controller has no impedance at frame {self.frame!r} that an event could change")
         if whole is None and any(change.whole for change in changes):
@@ -238,4 +242,8 @@ class PlacedPhases(ReferenceSource[PlacedPhaseState]):
         return state
 
     def _place(self, estimate: Estimate) -> Array:
-        return self._robot.placement(estimate.q, self.frame)[0]
+        if self._seen[0] is not estimate:
+            pin.forwardKinematics(self._model, self._data, estimate.q)
+            pose = pin.updateFramePlacement(self._model, self._data, self._frame_id)
+            self._seen = estimate, np.array(pose.translation)
+        return self._seen[1]

@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from pliant._references import superposed
+from pliant._references import superposed, turning
 from pliant.errors import ConfigError, SignalError
 from pliant.frozen import changed
 from pliant.interfaces import Lookahead, ReferenceSource
 from pliant.references.foreseen import Coming, instants, preview_of
-from pliant.references.planners.rotation_vectors import left_jacobian, nearest
 from pliant.references.planners.superposition import MotionLimits, Superposition
 from pliant.references.planners.workspace import Workspace
 from pliant.references.trajectories.trajectory import vector
@@ -189,7 +188,7 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         if task.rotation is not None:
             if not frame.turn.folded(time).pieces:
                 frame.base, frame.turn = _rotation(frame, time), Superposition((0.0, 0.0, 0.0))
-            turn = nearest(log3(task.rotation @ frame.base.T), frame.turn.target)
+            turn = _nearest(log3(task.rotation @ frame.base.T), frame.turn.target)
             frame.rotation = task.rotation
         way = float(np.linalg.norm(np.subtract(target, frame.linear.target)))
         angle = float(np.linalg.norm(np.subtract(turn, frame.turn.target)))
@@ -219,8 +218,7 @@ def _now(frame: PlannedFrame, time: float) -> tuple[tuple[Array, Array], Array, 
     position, velocity, acceleration = superposed(frame.linear.base, frame.linear.pieces, time, 6)
     pose = (position, _rotation(frame, time))
     if frame.turn.pieces:
-        before, now, after = (_angular_velocity(frame.turn, time + s) for s in (-_ANGULAR_STEP, 0.0, _ANGULAR_STEP))
-        velocity[3:], acceleration[3:] = now, (after - before) / (2.0 * _ANGULAR_STEP)
+        velocity[3:], acceleration[3:] = turning(frame.turn.base, frame.turn.pieces, time, _ANGULAR_STEP)
     elif not frame.linear.pieces:
         frame.resting = pose
     return pose, velocity, acceleration
@@ -231,10 +229,13 @@ def _rotation(frame: PlannedFrame, time: float) -> Array:
     return exp3(turn) @ frame.base if any(turn) else frame.base
 
 
-def _angular_velocity(plan: Superposition, time: float) -> Array:
-    """World axes (3,), rad/s: ω = J_l(r) ṙ of the rotation vector r."""
-    r, rate, _ = plan.at(time)
-    return left_jacobian(r) @ np.array(rate)
+def _nearest(turn: Array, last: tuple[float, ...]) -> tuple[float, ...]:
+    """Of the rotation vectors of one rotation, r and r − 2π r/|r|, the one nearer to the last target."""
+    angle = float(np.linalg.norm(turn))
+    if angle < 1e-9:
+        return tuple(turn.tolist())
+    other = turn * (1.0 - 2.0 * np.pi / angle)
+    return tuple((turn if np.linalg.norm(turn - last) <= np.linalg.norm(other - last) else other).tolist())
 
 
 def _same(a: Array, b: Array | None) -> bool:
