@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "../shared/contract.hpp"
 #include "arrays.hpp"
 #include "material_rows.hpp"
 #include "sampled.hpp"
@@ -205,6 +206,7 @@ class ContactLoop {
 }  // namespace
 
 NB_MODULE(_contact, m) {
+  pliant::agree(m, "_contact");
   nb::set_leak_warnings(false);  // surfaces that a cache keeps until Python ends are no leak
   m.attr("BRISTLE_SIZE") = kBristleSize;
   m.attr("RIM") = kRim;

@@ -8,6 +8,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "../shared/contract.hpp"
 #include "bind_chain.hpp"
 #include "bind_part.hpp"
 #include "bind_stages.hpp"
@@ -15,6 +16,7 @@
 using namespace pliant::estimation;
 
 NB_MODULE(_estimation, m) {
+  pliant::agree(m, "_estimation");
   bind_stages(m);
   bind_chain(m);
   bind_part(m);

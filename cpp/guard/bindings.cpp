@@ -1,6 +1,7 @@
 // Extension module pliant._guard. Every function answers whether a signal is
 // sound beyond doubt; where it says no, src/pliant/guard/sound.py finds out
 // what is wrong, or that nothing is.
+#include "../shared/contract.hpp"
 #include "bind_step_limit.hpp"
 #include "bind_step_limit_part.hpp"
 #include "numbers.hpp"
@@ -180,6 +181,7 @@ bool is_command(nb::handle command, long n, nb::handle bound) {
 }  // namespace
 
 NB_MODULE(_guard, m) {
+  pliant::agree(m, "_guard");
   m.def("is_reading", &is_reading, "reading"_a, "n"_a, "frames"_a);
   m.def("is_estimate", &is_estimate, "estimate"_a, "n"_a);
   m.def("is_reference", &is_reference, "reference"_a, "n"_a);

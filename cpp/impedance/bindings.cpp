@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "../shared/contract.hpp"
 #include "bind_part.hpp"
 #include "bind_robot.hpp"
 #include "drive.hpp"
@@ -116,6 +117,7 @@ nb::tuple names(const char* const (&list)[N]) {
 }  // namespace
 
 NB_MODULE(_impedance, m) {
+  pliant::agree(m, "_impedance");
   m.doc() = "Compiled core of the stack of fractal impedance tasks; `pliant.controllers.stack` is its typed face.";
   m.attr("ENERGIES") = names(Stack::kEnergyNames);
   m.attr("AXIS_ROWS") = names(Task::kRowNames);

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "../shared/contract.hpp"
 #include "../shared/numpy_arrays.hpp"
 #include "block.hpp"
 
@@ -54,6 +55,7 @@ nb::tuple run(Block& block, const Packed<double, 2>& rows, int ticks, const Pack
 }  // namespace
 
 NB_MODULE(_loop, m) {
+  pliant::agree(m, "_loop");
   m.doc() = "Blocks of ticks of a control loop whose parts are all compiled.";
   nb::class_<Part>(m, "Part").def_prop_ro("memory_size", &Part::memory_size);
   nb::class_<World>(m, "World");

@@ -1,4 +1,5 @@
 // Python face of the core; meaning, shapes and units are in src/pliant/_mpc.pyi.
+#include "../shared/contract.hpp"
 #include "binding/bind_step.hpp"
 #include "binding/chain_model.hpp"
 #include "binding/node.hpp"
@@ -7,6 +8,7 @@
 #include "binding/solver.hpp"
 
 NB_MODULE(_mpc, m) {
+  pliant::agree(m, "_mpc");
   using namespace pliant::mpc;
   m.attr("MAX_JOINTS") = max_joints;
   binding::bind_chain_and_model(m);

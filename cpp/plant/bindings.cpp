@@ -1,4 +1,5 @@
 // Extension module pliant._plant.
+#include "../shared/contract.hpp"
 #include "bind_imperfect_robot.hpp"
 #include "bind_physics.hpp"
 #include "bind_truth.hpp"
@@ -7,6 +8,7 @@
 using namespace pliant::plant;
 
 NB_MODULE(_plant, m) {
+  pliant::agree(m, "_plant");
   m.attr("MUJOCO_VERSION") = mjVERSION_HEADER;
   m.def("same_layout", &same_layout, "model"_a, "data"_a);
   bind_truth(m);

@@ -1,6 +1,7 @@
 // Extension module pliant._references.
 #include <nanobind/stl/vector.h>
 
+#include "../shared/contract.hpp"
 #include "../shared/numpy_arrays.hpp"
 #include "bind_exploration.hpp"
 #include "spline.hpp"
@@ -57,6 +58,7 @@ nb::object parts(const Packed<const double, 1>& row, nb::handle offset, const st
 }  // namespace
 
 NB_MODULE(_references, m) {
+  pliant::agree(m, "_references");
   pliant::import_numpy();
   m.doc() = "Functions of time that a loop asks for in each tick.";
   nb::class_<Spline>(m, "Spline")

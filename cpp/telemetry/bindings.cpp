@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "../shared/contract.hpp"
 #include "pack.hpp"
 #include "row.hpp"
 
@@ -44,6 +45,7 @@ void pack(nb::bytes shape, const std::vector<RecordRow>& records, const std::vec
 }  // namespace
 
 NB_MODULE(_telemetry, m) {
+  pliant::agree(m, "_telemetry");
   m.def("pack", &pack, "template"_a, "records"_a, "columns"_a, "times"_a, "out"_a.noconvert());
   nb::class_<Row>(m, "Row")
       .def(nb::init<nb::object>(), "flat"_a)

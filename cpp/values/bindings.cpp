@@ -1,4 +1,5 @@
 // Extension module pliant._values.
+#include "../shared/contract.hpp"
 #include "changer.hpp"
 #include "maker.hpp"
 #include "views.hpp"
@@ -7,6 +8,7 @@ using namespace pliant::values;
 using namespace nb::literals;
 
 NB_MODULE(_values, m) {
+  pliant::agree(m, "_values");
   m.doc() = "Frozen values made in one call, and views of one array.";
   pliant::import_numpy();
   m.def("make_by_slots", &make_by_slots, "kind"_a, "fields"_a, "absent"_a);

@@ -14,6 +14,7 @@ import typer
 from rich.console import Console
 
 from pliant import __version__
+from pliant.contract import stale
 from pliant.errors import PliantError, RunFailedError, told
 
 _err = Console(stderr=True)
@@ -45,6 +46,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except (Exception, SystemExit) as error:
             if isinstance(error.__context__, BrokenPipeError):  # rich raises SystemExit when the pipe is closed
                 raise
+            if sentence := stale(error):
+                _complain("error", sentence)
+                raise typer.Exit(2) from None
             _complain("error", f"pliant {__version__} did not foresee this ({told(error)}); {_kept()}")
             raise typer.Exit(2) from None
 
