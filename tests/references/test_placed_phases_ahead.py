@@ -88,6 +88,19 @@ def test_a_preview_changes_nothing_of_what_is_said() -> None:
         np.testing.assert_array_equal(one.tasks[0].velocity, other.tasks[0].velocity)
 
 
+def test_a_preview_is_made_where_one_is_due_and_is_then_that_of_each_tick() -> None:
+    always, rarely = (played(planner(1, Lookahead(10, 0.02, H, every)), 1.2) for every in (0.0, 3 * H))
+    made = [tick for tick, reference in enumerate(rarely) if reference.preview is not None]
+    assert made == list(range(0, len(rarely), 3))
+    for tick, reference in enumerate(always):
+        assert reference.preview is not None  # control
+        if tick in made:
+            ours = rarely[tick].preview
+            assert ours is not None
+            np.testing.assert_array_equal(ours.position, reference.preview.position)
+            np.testing.assert_array_equal(ours.velocity, reference.preview.velocity)
+
+
 def test_a_phase_that_only_contact_ends_goes_on_and_a_failure_is_not_foreseen() -> None:
     first = TaskReference("flange", HERE)
     last = PlacedPhase("last", TaskReference("flange", HERE + 0.1), (Ending(1.0),))

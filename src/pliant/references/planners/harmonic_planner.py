@@ -70,13 +70,15 @@ class PlannedFrame:
 class PlannerState:
     """Owned by the loop."""
 
-    __slots__ = ("clamped", "first", "frames", "inner")
+    __slots__ = ("clamped", "first", "frames", "inner", "next_look")
 
     def __init__(self, inner: Any, first: Array) -> None:
         self.inner, self.first = inner, first
         self.frames: dict[str, PlannedFrame] = {}
         self.clamped: dict[str, Array] = {}
         """channel → shift (3,) m of the last target; another one where a shift changes"""
+        self.next_look = -np.inf
+        """s at which a preview is due"""
 
 
 class HarmonicPlanner(ReferenceSource[PlannerState]):
@@ -130,9 +132,10 @@ class HarmonicPlanner(ReferenceSource[PlannerState]):
         if self.workspaces:
             diagnostics = {**diagnostics, **state.clamped} if diagnostics else state.clamped
         found = changed(goal, tasks=tuple(tasks), diagnostics=diagnostics)
-        if self.lookahead is not None:
-            preview = preview_of(self.foreseen(goal, state, instants(estimate.time, self.lookahead)))
-            found = changed(found, preview=preview)
+        ahead = self.lookahead
+        if ahead is not None and ahead.due(estimate.time, state.next_look):
+            state.next_look = estimate.time + ahead.every
+            found = changed(found, preview=preview_of(self.foreseen(goal, state, instants(estimate.time, ahead))))
         return found, state
 
     def foreseen(self, goal: Reference, state: PlannerState, times: Array) -> list[Reference]:
