@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import mujoco
 import numpy as np
 
 from pliant.experiments.base import CaseConfig
 from pliant.experiments.case import Case
 from pliant.experiments.result import Result
 from pliant.experiments.runner import file_stem
+from pliant.simulation.snapshot import Camera, Snapshot, render
 from pliant.spatial import Array
 from pliant.telemetry.plots import dots, save, sweep
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Later = Callable[[], "Figure | None"]
+"""a figure that waits for its pictures"""
 CaseFigure = Callable[[Case[Any], Sequence[Result]], Mapping[str, "Figure"]]
 
 
@@ -33,10 +38,48 @@ class Drawn:
     """part of the file's name"""
 
 
-def saved_figures(config: CaseConfig, folder: Path, figures: Mapping[str, Figure | None]) -> list[Path]:
-    """Files of the figures of one run. Args: figures: end of the file's name → figure; None: could not be drawn."""
-    stem = file_stem(config)
-    return [save(one, folder / f"{stem}_{name}.png") for name, one in figures.items() if one is not None]
+def pictures_later(
+    model: mujoco.MjModel,
+    snapshots: Sequence[Snapshot],
+    camera: Camera,
+    size: tuple[int, int],
+    draw: Callable[[Sequence[Array]], Figure],
+) -> Later:
+    """Begins to render pictures in a child process, which needs some seconds, while other figures are drawn.
+
+    Args:
+        model, snapshots, camera: as of `render`.
+        size: width and height of a picture in pixels.
+        draw: makes the figure of the pictures.
+
+    Returns:
+        Waits for the pictures and draws the figure; its answer is None if this machine cannot render.
+    """
+    beside = ThreadPoolExecutor(1)
+    begun = beside.submit(render, model, snapshots, camera, width=size[0], height=size[1])
+    beside.shutdown(wait=False)
+
+    def drawn() -> Figure | None:
+        pictures = begun.result()
+        return None if pictures is None else draw(pictures)
+
+    return drawn
+
+
+def saved_figures(config: CaseConfig, folder: Path, figures: Mapping[str, Figure | Later | None]) -> list[Path]:
+    """Files of the figures of one run.
+
+    Args:
+        config: of the run.
+        folder: where they go.
+        figures: end of the file's name → figure, or what waits for it; None: could not be drawn.
+    """
+    stem, made = file_stem(config), dict[str, Path]()
+    for name, one in sorted(figures.items(), key=lambda item: callable(item[1])):  # what is waited for comes last
+        drawn = one() if callable(one) else one
+        if drawn is not None:
+            made[name] = save(drawn, folder / f"{stem}_{name}.png")
+    return [made[name] for name in figures if name in made]
 
 
 def against_value(metrics: Sequence[Drawn], label: str, title: str, log_x: bool = False) -> CaseFigure:

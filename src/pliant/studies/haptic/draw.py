@@ -9,9 +9,9 @@ import numpy as np
 
 from pliant.experiments.base import Experiment
 from pliant.simulation import ImperfectPlant, MujocoPlant
-from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
+from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot
 from pliant.spatial import Array
-from pliant.studies.figures import saved_figures
+from pliant.studies.figures import Later, pictures_later, saved_figures
 from pliant.studies.haptic.config import HapticCaseConfig
 from pliant.studies.haptic.measure import HapticSignals
 from pliant.telemetry.log import Log
@@ -71,7 +71,7 @@ def _forces(signals: HapticSignals, axis: int) -> Panel:
     return Panel(f"force {'xyz'[axis]}, N", curves, least_height=2.0)
 
 
-def moments(config: HapticCaseConfig, experiment: Experiment, log: Log) -> Figure | None:
+def moments(config: HapticCaseConfig, experiment: Experiment, log: Log) -> Later | None:
     """The leg at its salient moments, with the foot's trace and the contact force ([HapFIC] Fig. 4)."""
     plant = experiment.plant
     if isinstance(plant, ImperfectPlant):
@@ -81,12 +81,11 @@ def moments(config: HapticCaseConfig, experiment: Experiment, log: Log) -> Figur
     signals = HapticSignals.of(config, log)
     indices = np.minimum(np.searchsorted(signals.time, config.snapshots), len(signals.time) - 1)
     shots = [_snapshot(signals, plant, int(index)) for index in indices]
-    pictures = render(plant.model, shots, _CAMERA, width=520, height=560)
-    if pictures is None:
-        return None
     titles = [f"t = {signals.time[index]:.2f} s" for index in indices]
     heading = f"{title(config)}: trace of the foot orange, contact force red"
-    return picture_row(pictures, titles, heading, 2.1, 2.7)
+    return pictures_later(
+        plant.model, shots, _CAMERA, (520, 560), lambda pictures: picture_row(pictures, titles, heading, 2.1, 2.7)
+    )
 
 
 def _snapshot(signals: HapticSignals, plant: MujocoPlant, index: int) -> Snapshot:

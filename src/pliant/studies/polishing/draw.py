@@ -9,9 +9,9 @@ import numpy as np
 
 from pliant.experiments.base import Experiment
 from pliant.simulation import ImperfectPlant, MujocoPlant
-from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
+from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot
 from pliant.spatial import Array
-from pliant.studies.figures import saved_figures
+from pliant.studies.figures import Later, pictures_later, saved_figures
 from pliant.studies.polishing.config import PolishingConfig
 from pliant.studies.polishing.paper_task import FRAME
 from pliant.telemetry.log import Log
@@ -49,7 +49,7 @@ def _history(config: PolishingConfig, log: Log) -> Figure:
     return time_series(panels, title=title, phases=log.phases())
 
 
-def _moments(config: PolishingConfig, experiment: Experiment, log: Log) -> Figure | None:
+def _moments(config: PolishingConfig, experiment: Experiment, log: Log) -> Later | None:
     """Reach, first contact, ramp, circle: the arm with what the tool has drawn so far and the force it feels."""
     plant = experiment.plant.inner if isinstance(experiment.plant, ImperfectPlant) else experiment.plant
     time, q = log.time("truth/q"), log["truth/q"]
@@ -59,14 +59,13 @@ def _moments(config: PolishingConfig, experiment: Experiment, log: Log) -> Figur
     if not isinstance(plant, MujocoPlant) or not instants:
         return None
     moments = np.searchsorted(time, instants)
-    pictures = render(
-        plant.model, [_snapshot(log, q, int(moment)) for moment in moments], _CAMERA, width=520, height=420
-    )
-    if pictures is None:
-        return None
+    shots = [_snapshot(log, q, int(moment)) for moment in moments]
     force = log[f"truth/{FRAME}/wrench"][:, 2]
     titles = [f"t = {time[moment]:.2f} s, {force[moment]:.0f} N" for moment in moments]
-    return picture_row(pictures, titles, f"{config.case}, {config.controller}", 2.6, 2.5)
+    heading = f"{config.case}, {config.controller}"
+    return pictures_later(
+        plant.model, shots, _CAMERA, (520, 420), lambda pictures: picture_row(pictures, titles, heading, 2.6, 2.5)
+    )
 
 
 def _snapshot(log: Log, q: Array, moment: int) -> Snapshot:

@@ -13,9 +13,9 @@ from pliant.controllers.profiles import ForceProfile
 from pliant.experiments.base import Experiment, Result
 from pliant.signals import ImpedanceTuning
 from pliant.simulation import MujocoPlant
-from pliant.simulation.snapshot import Camera, Path3, Snapshot, render
+from pliant.simulation.snapshot import Camera, Path3, Snapshot
 from pliant.spatial import Array
-from pliant.studies.figures import saved_figures
+from pliant.studies.figures import Later, pictures_later, saved_figures
 from pliant.studies.stack.config import StackCaseConfig
 from pliant.telemetry.log import Log
 from pliant.telemetry.plots import (
@@ -47,7 +47,8 @@ def run_figures(config: StackCaseConfig, experiment: Experiment, log: Log, folde
     actual, reference = log[f"truth/{tool}/position"], log[f"reference/{tool}/position"]
     plane = (1, 2) if config.path.kind == "stretch" else (0, 2)
     wall = config.wall.x if config.wall is not None else None
-    figures: dict[str, Figure] = {
+    figures: dict[str, Figure | Later | None] = {
+        "scene": _scene(config, experiment, log, tool),
         "path": task_path([Path2D("actual", actual)], reference, plane, f"Tool path · {title}", wall, by_error=True),
         "posture": posture_difference(
             time, log["truth/q"], log["reference/posture"], names, f"Posture off its reference · {title}"
@@ -60,10 +61,10 @@ def run_figures(config: StackCaseConfig, experiment: Experiment, log: Log, folde
         entries = {name: log[f"energy/{name}"] for name in ("stored", "supplied", "dissipated", "clamped")}
         margin = log["ee/storage_margin"][:, :3].min(axis=1)
         figures["energy"] = energy_ledger(time, entries, margin, f"Energy ledger · {title}")
-    return saved_figures(config, folder, {"scene": _scene(config, experiment, log, tool), **figures})
+    return saved_figures(config, folder, figures)
 
 
-def _scene(config: StackCaseConfig, experiment: Experiment, log: Log, tool: str) -> Figure | None:
+def _scene(config: StackCaseConfig, experiment: Experiment, log: Log, tool: str) -> Later | None:
     """The arm at four instants (solid) over its reference posture (pale), with both traces ([Stack] Fig. 4)."""
     if not isinstance(experiment.plant, MujocoPlant):
         return None
@@ -77,13 +78,12 @@ def _scene(config: StackCaseConfig, experiment: Experiment, log: Log, tool: str)
     )
     solid = [Snapshot(q[i], paths) for i in moments]
     ghost = [Snapshot(log["reference/posture"][i], paths) for i in moments]
-    size = {"width": 600, "height": 520}
-    pictures = render(experiment.plant.model, [*solid, *ghost], _CAMERA, **size)
-    if pictures is None:
-        return None
-    return _strip(
-        [0.72 * a + 0.28 * b for a, b in zip(pictures[:4], pictures[4:], strict=True)], time[moments], config.case
-    )
+
+    def drawn(pictures: Sequence[Array]) -> Figure:
+        both = [0.72 * a + 0.28 * b for a, b in zip(pictures[:4], pictures[4:], strict=True)]
+        return _strip(both, time[moments], config.case)
+
+    return pictures_later(experiment.plant.model, [*solid, *ghost], _CAMERA, (600, 520), drawn)
 
 
 def _strip(pictures: Sequence[Array], times: Array, title: str) -> Figure:

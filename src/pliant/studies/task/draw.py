@@ -12,9 +12,9 @@ import numpy.typing as npt
 from pliant.experiments.base import Experiment, Result
 from pliant.experiments.drawn import simulated
 from pliant.simulation import ImperfectPlant, MujocoPlant
-from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
+from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot
 from pliant.spatial import Array
-from pliant.studies.figures import saved_figures
+from pliant.studies.figures import Later, pictures_later, saved_figures
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.measure import TaskSignals
 from pliant.surfaces.unroll import unrolled
@@ -109,7 +109,7 @@ def _title(case: TaskCase) -> str:
     return " · ".join(part for part in (case.case, case.robot, case.controller, case.variant) if part)
 
 
-def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: TaskSignals) -> Figure | None:
+def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: TaskSignals) -> Later | None:
     plant = experiment.plant.inner if isinstance(experiment.plant, ImperfectPlant) else experiment.plant
     on_path = np.flatnonzero(signals.following)
     if not isinstance(plant, MujocoPlant) or on_path.size < 2:
@@ -124,14 +124,13 @@ def _moments(case: TaskCase, experiment: Experiment, log: Log, signals: TaskSign
         azimuth=128.0,
         elevation=-18.0,
     )
-    pictures = render(
-        plant.model, [_snapshot(log, q, frame, on_path, moment) for moment in moments], camera, width=520, height=420
-    )
-    if pictures is None:
-        return None
+    shots = [_snapshot(log, q, frame, on_path, moment) for moment in moments]
     time, force, wanted = signals.time, signals.force, signals.wanted
     titles = [f"t = {time[i]:.2f} s, {force[i]:.1f} of {wanted[i]:.1f} N" for i in moments]
-    return picture_row(pictures, titles, f"{case.case}, {case.robot}, {case.controller}", 2.6, 2.5)
+    heading = f"{case.case}, {case.robot}, {case.controller}"
+    return pictures_later(
+        plant.model, shots, camera, (520, 420), lambda pictures: picture_row(pictures, titles, heading, 2.6, 2.5)
+    )
 
 
 def _snapshot(log: Log, q: Array, frame: str, on_path: npt.NDArray[np.intp], moment: int) -> Snapshot:

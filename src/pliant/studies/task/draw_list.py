@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pliant.experiments.base import Experiment
-from pliant.experiments.runner import file_stem
 from pliant.simulation import ImperfectPlant, MujocoPlant
-from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot, render
+from pliant.simulation.snapshot import Arrow, Camera, Path3, Snapshot
+from pliant.studies.figures import Later, pictures_later, saved_figures
 from pliant.studies.task.config import TaskCase
 from pliant.studies.task.list_motion import Listed
 from pliant.telemetry.log import Log
-from pliant.telemetry.plots import Curve, Panel, save, time_series
+from pliant.telemetry.plots import Curve, Panel, time_series
 from pliant.telemetry.plots.pictures import picture_row
 
 if TYPE_CHECKING:
@@ -30,10 +30,8 @@ _SHARES = (0.02, 0.35, 0.65, 0.98)
 
 def list_figures(case: TaskCase, made: Listed, experiment: Experiment, log: Log, folder: Path) -> list[Path]:
     """Force, place and torque over time; the robot at four moments."""
-    stem = file_stem(case)
-    files = [save(_history(case, made, log), folder / f"{stem}_history.png")]
-    scene = _moments(case, made, experiment, log)
-    return files if scene is None else [save(scene, folder / f"{stem}_scene.png"), *files]
+    figures = {"scene": _moments(case, made, experiment, log), "history": _history(case, made, log)}
+    return saved_figures(case, folder, figures)
 
 
 def _history(case: TaskCase, made: Listed, log: Log) -> Figure:
@@ -57,7 +55,7 @@ def _history(case: TaskCase, made: Listed, log: Log) -> Figure:
     return time_series(panels, title=title, phases=log.phases())
 
 
-def _moments(case: TaskCase, made: Listed, experiment: Experiment, log: Log) -> Figure | None:
+def _moments(case: TaskCase, made: Listed, experiment: Experiment, log: Log) -> Later | None:
     plant = experiment.plant.inner if isinstance(experiment.plant, ImperfectPlant) else experiment.plant
     frame, time = made.believed.frames[0], log.time("measurement/q")
     if not isinstance(plant, MujocoPlant) or len(time) < 2:
@@ -77,14 +75,9 @@ def _moments(case: TaskCase, made: Listed, experiment: Experiment, log: Log) -> 
         )
         for i in moments
     ]
-    pictures = render(plant.model, shots, camera, width=520, height=420)
-    if pictures is None:
-        return None
     names = {i: next((name for begin, name in reversed(log.phases()) if begin <= time[i]), "") for i in moments}
-    return picture_row(
-        pictures,
-        [f"t = {time[i]:.2f} s" + (f", {names[i]}" if names[i] else "") for i in moments],
-        f"{case.case}, {case.robot}, {case.controller}",
-        2.6,
-        2.5,
+    titles = [f"t = {time[i]:.2f} s" + (f", {names[i]}" if names[i] else "") for i in moments]
+    heading = f"{case.case}, {case.robot}, {case.controller}"
+    return pictures_later(
+        plant.model, shots, camera, (520, 420), lambda pictures: picture_row(pictures, titles, heading, 2.6, 2.5)
     )
