@@ -23,7 +23,8 @@ _HARMLESS = frozenset(("__init__", "__doc__", "__module__", "__abstractmethods__
 
 def face_of(part: object, kind: type[_Face], *given: object) -> _Face | None:
     """What the `compiled_face` of a part returns; None: it has none, or a subclass or the object itself has another
-    method in place of one of that class, which the compiled code does not know.
+    method in place of one of that class, which the compiled code does not know. A method that is replaced in the class
+    itself is not noticed.
 
     Args:
         part: of a loop.
