@@ -24,7 +24,7 @@ class Counts:
     def __call__(self, tick: Tick) -> None:
         self.single += 1
 
-    def block(self, rows: Rows) -> None:
+    def take_block(self, rows: Rows) -> None:
         self.blocks.append(len(rows.numbers))
 
 

@@ -18,6 +18,7 @@ from pliant.interfaces import ReferenceSource
 from pliant.references.known_phases import KnownPhase
 from pliant.references.phase_state import PhaseState
 from pliant.references.phases import PhasedSource
+from pliant.references.retuned import Retuned
 from pliant.signals import Estimate, Reference, Tick
 from pliant.simulation.imperfections.draws import Draws
 from pliant.spatial import Array
@@ -43,6 +44,12 @@ def test_a_block_gives_the_log_of_the_loop_in_python(case: str, controller: str)
     """Over the first contact: the environment becomes known, phases change, and one robot stops."""
     outcome, counts = both(wired(case, controller), 1700)
     assert sum(counts.blocks) > 0.95 * outcome.ticks
+
+
+def test_a_preview_goes_through_a_source_that_retunes() -> None:
+    case = wired("ideal", "force-feedback-mpc")
+    _, counts = both(replace(case, source=Retuned(case.source, [])), 400)
+    assert counts.blocks
 
 
 @pytest.mark.parametrize("most", [1, 3, 100])

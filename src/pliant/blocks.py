@@ -7,12 +7,13 @@ out what it is.
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from operator import length_hint
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -30,8 +31,11 @@ from pliant.interfaces import Controller, Estimator, Observer, Plant, ReferenceS
 from pliant.signals import Command, Estimate, Measurement, Reference
 from pliant.spatial import Array
 
+_Answer = TypeVar("_Answer")
 MOST = 256
 """ticks of a block; also the most that Python makes after blocks that came to nothing"""
+_FIRST = 16  # ticks of the first block
+_LONGEST = 0.05  # s of wall time of a block, about: Ctrl-C waits for its end
 _RANGE = type(iter(range(0)))
 """a clock that waits for nobody"""
 
@@ -84,14 +88,14 @@ class Blocks:
     ) -> None:
         self._parts = (plant, estimator, source, controller)
         self._most = () if bound is None else tuple(bound.tolist())
-        taken = [unchanged(observer, "block") for observer in observers]
+        taken = [unchanged(observer, "take_block") for observer in observers]
         self._observers = [take for take in taken if take is not None]
         faced = all(unchanged(part, "compiled_face") is not None for part in self._parts)
         self.possible = faced and len(self._observers) == len(taken)
         """False: not with these parts or observers"""
         self._form: BlockForm | None = None
         self._numbers, self._wall = np.empty((0, 0)), np.empty((MOST, 2))
-        self._rest, self._pause = 0, 1
+        self._rest, self._pause, self._ticks = 0, 1, _FIRST
 
     def run(self, at: Standing | None, clock: Iterator[object]) -> Ran | None:
         """Runs a block; None: the next tick is for Python. Of the clock it takes a period for each tick.
@@ -105,7 +109,7 @@ class Blocks:
         if self._rest:
             self._rest -= 1
             return None
-        ran = self._attempt(at, min(length_hint(clock), MOST))
+        ran = self._attempt(at, min(length_hint(clock), self._ticks, MOST))
         if ran is None:
             self._rest, self._pause = self._pause, min(2 * self._pause, MOST)
             return None
@@ -122,7 +126,7 @@ class Blocks:
 
     def _attempt(self, at: Standing, most: int) -> Ran | None:
         plant, estimator, source, controller = self._parts
-        known = face_of(source, KnownReferences, at.estimate, at.states[1])
+        known = _asked(lambda: face_of(source, KnownReferences, at.estimate, at.states[1]))
         if known is None or not most:
             return None
         form = self._form
@@ -143,13 +147,15 @@ class Blocks:
         times = faces.plant.begin(most)
         if times[0] != at.measurement.time:
             return None
-        count = known.fill(times, rows[:most, form.reference])
+        count = _asked(lambda: known.fill(times, rows[:most, form.reference])) or 0
         rows[0, 0], rows[0, form.measurement] = at.measurement.time, faces.plant.numbers(at.measurement)
         est, ref, ctl = at.states
         memory = np.concatenate([faces.estimator.memory(est), faces.controller.memory(ctl)])
+        begun = time.perf_counter()
         ticks, _ = form.block.run(rows, count, memory, self._wall)
         if not ticks:
             return None
+        self._ticks = max(1, int(_LONGEST * ticks / (time.perf_counter() - begun)))
         last, after = form.tick(rows[ticks - 1].copy()), rows[ticks].copy()
         own = form.memory_of_estimator
         states = (
@@ -169,3 +175,11 @@ class Blocks:
         if self._numbers.shape[1] != width:
             self._numbers = np.zeros((MOST + 1, width))
         return self._numbers
+
+
+def _asked(question: Callable[[], _Answer]) -> _Answer | None:
+    """An answer about references to come; None where one cannot be made: Python finds out why, in its own tick."""
+    try:
+        return question()
+    except Exception:
+        return None

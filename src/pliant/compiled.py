@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import FunctionType
 from typing import Any, Protocol, TypeVar
 
 from pliant._loop import Part, World
@@ -23,8 +24,7 @@ _HARMLESS = frozenset(("__init__", "__doc__", "__module__", "__abstractmethods__
 
 def face_of(part: object, kind: type[_Face], *given: object) -> _Face | None:
     """What the `compiled_face` of a part returns; None: it has none, or a subclass or the object itself has another
-    method in place of one of that class, which the compiled code does not know. A method that is replaced in the class
-    itself is not noticed.
+    method in place of one of that class, or the class has one of another module, which the compiled code does not know.
 
     Args:
         part: of a loop.
@@ -37,14 +37,24 @@ def face_of(part: object, kind: type[_Face], *given: object) -> _Face | None:
 
 
 def unchanged(part: object, name: str) -> Callable[..., Any] | None:
-    """A method of a part; None if there is none, or if something was put in place of any method of its class."""
+    """A method of a part; None if there is none, or if something was put in place of any method of its class, in it, in
+    a subclass or in the object."""
     kinds = type(part).__mro__
     owner = next((place for place, kind in enumerate(kinds) if name in vars(kind)), None)
     if owner is None:
         return None
+    if any(_is_of_another_module(value, kind) for kind in kinds[owner:-1] for value in vars(kind).values()):
+        return None
     known = {key for kind in kinds[owner:-1] for key, value in vars(kind).items() if _is_method(value)}
     own = {key for kind in kinds[:owner] for key in vars(kind)} | getattr(part, "__dict__", {}).keys()
-    return None if own & known - _HARMLESS else getattr(part, name)
+    found = None if own & known - _HARMLESS else getattr(part, name)
+    return found if callable(found) else None
+
+
+def _is_of_another_module(value: object, kind: type) -> bool:
+    """Whether something in a class is a function that was written elsewhere."""
+    function = value.fget if isinstance(value, property) else getattr(value, "__func__", value)
+    return isinstance(function, FunctionType) and function.__module__ != kind.__module__
 
 
 def _is_method(value: object) -> bool:
@@ -232,6 +242,6 @@ class BlockObserver(Protocol):
         """Called with a tick that was made in Python."""
         ...
 
-    def block(self, rows: Rows) -> None:
+    def take_block(self, rows: Rows) -> None:
         """Called with one or more ticks that were made without Python, instead of once with each."""
         ...

@@ -48,7 +48,7 @@ def recorded(tick: Callable[[Array], Tick], numbers: Array, block: bool) -> byte
     stream = io.BytesIO()
     with Recorder(stream) as recorder:
         if block:
-            recorder.block(Rows(numbers, tick, {}))
+            recorder.take_block(Rows(numbers, tick, {}))
         else:
             for row in numbers:
                 recorder(tick(row))

@@ -138,7 +138,7 @@ class _Reporter:
     def __call__(self, tick: Tick) -> None:
         self._passed(1)
 
-    def block(self, rows: Rows) -> None:
+    def take_block(self, rows: Rows) -> None:
         self._passed(len(rows.numbers))
 
     def _passed(self, ticks: int) -> None:

@@ -45,7 +45,7 @@ class StartNotes:
             free = tick.truth is None or not any(np.any(wrench) for wrench in tick.truth.wrenches.values())
             self.sentences = start_hints(tick.estimate) if free else ()
 
-    def block(self, rows: Rows) -> None:
+    def take_block(self, rows: Rows) -> None:
         if self.sentences is None:
             self(rows.first())
 

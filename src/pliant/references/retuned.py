@@ -45,6 +45,7 @@ class RetunedReferences(KnownReferences):
 
     def __init__(self, inner: KnownReferences, tunings: Mapping[str, ImpedanceTuning], until: float) -> None:
         self.inner, self.size, self._tunings, self._until = inner, inner.size, tunings, until
+        self.ahead, self.names = inner.ahead, inner.names
 
     def reference(self, time: float, numbers: Array) -> Reference:
         return _retuned(self.inner.reference(time, numbers), self._tunings)
@@ -52,6 +53,9 @@ class RetunedReferences(KnownReferences):
     def fill(self, times: Array, rows: Array) -> int:
         count = int(np.searchsorted(times, self._until))
         return self.inner.fill(times[:count], rows[:count])
+
+    def after(self, state: RetunedState, ticks: int) -> RetunedState:
+        return state._replace(inner=self.inner.after(state.inner, ticks))
 
 
 def _retuned(reference: Reference, tunings: Mapping[str, ImpedanceTuning]) -> Reference:

@@ -104,7 +104,7 @@ class Recorder:
         if (self._seen - 1) % self._decimation == 0:
             self._record(tick)
 
-    def block(self, rows: Rows) -> None:
+    def take_block(self, rows: Rows) -> None:
         """Records ticks of a block; errors as of a single one."""
         kept = rows.numbers[-self._seen % self._decimation :: self._decimation]
         self._seen += len(rows.numbers)

@@ -127,8 +127,10 @@ class PostureSource(ReferenceSource[Started]):
         rows = self._spline.table(inside)
         if not self._more:
             return rows
-        times = zip(elapsed.tolist(), inside.tolist(), strict=True)
-        return np.array([self._completed(row, *at) for row, at in zip(rows, times, strict=True)])
+        whole = np.empty((len(rows), rows.shape[1] + self._more))
+        for i, at in enumerate(zip(elapsed.tolist(), inside.tolist(), strict=True)):
+            whole[i] = self._completed(rows[i], *at)
+        return whole
 
     def _completed(self, row: Array, elapsed: float, inside: float) -> Array:
         """A row of the spline with the twist of a rotation, and behind it the rotation and the wrench."""
