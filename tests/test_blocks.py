@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -19,7 +21,7 @@ from pliant.signals import Estimate, Reference
 from pliant.simulation import MujocoPlant, Push
 from pliant.spatial import Array
 from pliant.wiring.experiment import Experiment
-from tests.both_loops import both, run
+from tests.both_loops import Counts, both, run
 
 STUDY = get_study("stack")
 
@@ -92,6 +94,22 @@ def test_a_robot_that_stops_in_the_middle(limit: float, force: float) -> None:
     assert "times its speed limit" in outcome.failure
     assert 1 < outcome.ticks < 2900
     assert counts.single < 3
+
+
+def test_a_robot_that_stops_leaves_no_cycle_of_objects() -> None:
+    """Which would keep its log until the next search for cycles."""
+    experiment, counts = with_plant(wired(), speed_stop=0.03), Counts()
+    gone = weakref.ref(counts)
+    gc.disable()
+    try:
+        outcome = experiment.run(range(3000), [counts])
+        blocks_were = len(counts.blocks)
+        del counts
+        assert outcome.failure is not None
+        assert blocks_were
+        assert gone() is None
+    finally:
+        gc.enable()
 
 
 def test_a_simulation_that_diverges() -> None:

@@ -89,8 +89,8 @@ def run(
             ticks, measurement = ticks + ran.ticks, ran.at.measurement
             cycle.take(ran)
             blocks.show(ran)
-            if stopped := _stopped(ran):
-                return _ended(ticks - 1, cycle.now, stopped)
+            if stopped := _stopped(ran, ticks - 1, cycle.now):
+                return stopped
     return Outcome(ticks, measurement.time)
 
 
@@ -173,12 +173,12 @@ def _pair(answer: tuple[_Signal, Any], part: str) -> tuple[_Signal, Any]:
     raise ConfigError(f"the {part}'s step must return two things, its signal and its next state, got {answer!r:.80}")
 
 
-def _stopped(ran: Ran) -> BaseException | None:
-    """Why the plant stopped in the last period of a block; None: it did not."""
+def _stopped(ran: Ran, ticks: int, now: float) -> Outcome | None:
+    """How the run ended if the plant stopped in the last period of a block; None: it did not."""
     try:
         ran.land()
     except _WHATEVER as error:
-        return error
+        return _ended(ticks, now, error)
     return None
 
 

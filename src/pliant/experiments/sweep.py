@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
@@ -122,9 +123,10 @@ def run_task(task: Job) -> Run:
     started = time.perf_counter()
     try:
         result = _run(task)
+        status = "finished" if result.failure is None else "failed"
     except (Exception, SystemExit) as error:
-        return Run(Result(task.config, (), _sentence(error)), "crashed", time.perf_counter() - started)
-    status = "finished" if result.failure is None else "failed"
+        result, status = Result(task.config, (), _sentence(error)), "crashed"
+    gc.collect(1)  # a log in a cycle of objects would wait for the next search, and the command makes them rare
     return Run(result, status, time.perf_counter() - started)
 
 
