@@ -29,9 +29,9 @@ def stack_tables(summary: Summary) -> str:
         "|---|---:|---|---|---|---:|",
     ]
     for row in summary.cases:
-        if row.name == "stack" and all(_found(row, name) for name in AXES):
+        if row.name == "stack" and all(found_in(row, name) for name in AXES):
             values, paper, target = _three(row)
-            step = _found(row, "torque step")
+            step = found_in(row, "torque step")
             cells = (f"`{row.case}`", str(row.runs), values, paper, target, number(step.value) if step else "–")
             lines.append(f"| {' | '.join(cells)} |")
     names = dict.fromkeys(row.name for row in summary.cases if row.case in COMPARED)
@@ -50,7 +50,7 @@ def haptic_table(summary: Summary) -> str:
             continue
         printed = next((r for r in summary.cases if (r.case, r.controller) == (row.case, "haptic-paper")), None)
         for metric in row.metrics:
-            beside = _found(printed, metric.name) if printed else None
+            beside = found_in(printed, metric.name) if printed else None
             unit = "" if metric.unit in ("1", "") else f", {metric.unit}"
             ours, theirs = _value(metric), _value(beside) if beside else "–"
             target = target_text(metric) if metric.target is not None else ""
@@ -63,12 +63,12 @@ def _value(metric: Metric) -> str:
     return "< 1e-6" if 0.0 < metric.value < 1e-6 else value_text(metric)
 
 
-def _found(row: CaseSummary, name: str) -> Metric | None:
+def found_in(row: CaseSummary, name: str) -> Metric | None:
     return next((metric for metric in row.metrics if metric.name == name), None)
 
 
 def _three(row: CaseSummary) -> tuple[str, str, str]:
-    found = [metric for name in AXES if (metric := _found(row, name))]
+    found = [metric for name in AXES if (metric := found_in(row, name))]
     papers, targets = [m.paper for m in found], [m.target for m in found]
     paper = "–" if None in papers else " / ".join(f"{p:g}" for p in papers if p is not None)
     target = "–" if None in targets else " / ".join(f"{t:g}" for t in targets if t is not None)

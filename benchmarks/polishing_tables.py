@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from docs_rows import rows
+from docs_tables import found_in
 from tasks import put_into
 
 from pliant.cli.paper_tables import paper_tables
@@ -21,7 +22,7 @@ from pliant.experiments.registry import get_study
 from pliant.experiments.results import read_results
 from pliant.experiments.summarise import summarised
 from pliant.telemetry.proportion import share_text
-from pliant.telemetry.summary import CaseSummary, Metric, Summary
+from pliant.telemetry.summary import CaseSummary, Summary
 from pliant.telemetry.table import value_text
 
 PAGE, README = Path("docs/study_polishing.md"), Path("README.md")
@@ -42,12 +43,8 @@ SWEPT: Mapping[str, Sequence[str]] = {
 LOOPS = {"PID": "with", "no PID": "without"}
 
 
-def found(row: CaseSummary | None, name: str) -> Metric | None:
-    return None if row is None else next((metric for metric in row.metrics if metric.name == name), None)
-
-
 def cell(row: CaseSummary | None, name: str) -> str:
-    metric = found(row, name)
+    metric = None if row is None else found_in(row, name)
     return "–" if metric is None else value_text(metric)
 
 
@@ -86,7 +83,7 @@ def robustness(case: str, summary: Summary) -> str:
     ]
     for row in (row for row in summary.cases if row.case == case):
         values = [cell(row, name) for name in ("E_λ", "E_P", "λ_max", "t_break")]
-        bounds = [m.target for name in ("E_λ", "E_P") if (m := found(row, name)) and m.target is not None]
+        bounds = [m.target for name in ("E_λ", "E_P") if (m := found_in(row, name)) and m.target is not None]
         bound = " / ".join(f"{bound:g}" for bound in bounds) or "–"
         lines.append(f"| {row.variant} | {' | '.join(values)} | {bound} | {failed(row)} |")
     return "\n".join(lines)
@@ -113,16 +110,17 @@ def readme(summary: Summary) -> str:
         " target at 5 ms | paper |",
         "|---|---:|---:|---:|---:|",
     ]
+    names = dict.fromkeys(row.controller for row in summary.cases if row.case in PAPER[:2])
     for label, loop in LOOPS.items():
-        names = dict.fromkeys(row.controller for row in summary.cases if row.case in PAPER[:2])
-        for name in names:
-            both = [_of(summary, case, name, label) for case in PAPER[:2]]
-            errors = [metric for metric in ("E_λ", "E_P") if any(found(row, metric) for row in both)]
-            judged = [m.target for error in errors if (m := found(both[1], error)) and m.target is not None]
-            paper = [m.paper for error in errors for m in [_first(both, error)] if m and m.paper is not None]
+        for controller in names:
+            both = [_of(summary, case, controller, label) for case in PAPER[:2]]
+            judged, paper = (
+                [value for name in ("E_λ", "E_P") if (value := _first(these, name, what)) is not None]
+                for these, what in ((both[1:], "target"), (both, "paper"))
+            )
             cells = [_errors(row) for row in both]
             cells += [" / ".join(f"{value:g}" for value in values) or "–" for values in (judged, paper)]
-            lines.append(f"| `{name}`, {loop} | {' | '.join(cells)} |")
+            lines.append(f"| `{controller}`, {loop} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
@@ -130,8 +128,10 @@ def _of(summary: Summary, *wanted: str) -> CaseSummary | None:
     return next((row for row in summary.cases if (row.case, row.controller, row.variant) == wanted), None)
 
 
-def _first(both: Sequence[CaseSummary | None], name: str) -> Metric | None:
-    return next((metric for row in both if (metric := found(row, name))), None)
+def _first(rows: Sequence[CaseSummary | None], name: str, what: str) -> float | None:
+    """Target or paper's number of a metric, of the first row that has one."""
+    metrics = [metric for row in rows if row is not None and (metric := found_in(row, name))]
+    return next((value for metric in metrics if (value := getattr(metric, what)) is not None), None)
 
 
 def _errors(row: CaseSummary | None) -> str:
